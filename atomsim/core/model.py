@@ -1,0 +1,232 @@
+"""The compiled half of a scene and its changing half as plain frozen records; knows no scene, no file, no algorithm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """The declaration something was compiled from: `bonds.left` at line 12 of rods.yaml."""
+
+    section: str
+    name: str
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.section}.{self.name} ({self.file}:{self.line})"
+
+
+@dataclass(frozen=True, slots=True)
+class GroupSpan:
+    """The consecutive atoms of one group: start ≤ atom < stop. `color` is `#rrggbb`."""
+
+    name: str
+    start: int
+    stop: int
+    color: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BondTable:
+    """The pairs of one `bonds` declaration, canonical: first < second, no duplicates, sorted by (first, second).
+
+    Attributes:
+        origin: the declaration.
+        first: lower atom of each pair, (n_pairs,) int64.
+        second: higher atom of each pair, (n_pairs,) int64.
+        rest_squared: square of the desired distance r of each pair [length²], (n_pairs,) float64.
+    """
+
+    origin: Origin
+    first: Indices
+    second: Indices
+    rest_squared: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Within:
+    """Atoms that collide with one another: all pairs at least `min_gap` places apart in `atoms` (ascending)."""
+
+    atoms: Indices
+    min_gap: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Between:
+    """Two sets of atoms (ascending): every atom of one collides with every other atom of the other."""
+
+    left: Indices
+    right: Indices
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CollisionTable:
+    """The pairs of one `collisions` declaration as the union of its blocks; never expanded, for a fluid has 10¹¹ of them."""
+
+    origin: Origin
+    blocks: tuple[Within | Between, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DampingForce:
+    """j ← j − m·v (paper section 2.3); `coefficient` is m."""
+
+    origin: Origin
+    atoms: Indices
+    coefficient: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PushForce:
+    """j ← j + impulse while from_round ≤ round < until_round (None: for ever); gravity is a push for ever."""
+
+    origin: Origin
+    atoms: Indices
+    impulse: tuple[float, float, float]
+    from_round: int
+    until_round: int | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OscillateForce:
+    """j ← j + impulse · sin(2π·round/period + phase)."""
+
+    origin: Origin
+    atoms: Indices
+    impulse: tuple[float, float, float]
+    period: float
+    phase: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TorqueForce:
+    """j ← j + s · axis × (c − centre), s such that the total torque about `axis` (a unit vector) is `magnitude`.
+
+    The centre is the centroid of the atoms `about`.
+    """
+
+    origin: Origin
+    atoms: Indices
+    axis: tuple[float, float, float]
+    magnitude: float
+    about: Indices
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TetherForce:
+    """The bond force of each atom towards a fixed point; `rest_squared` is (n_atoms of `atoms`,) [length²]."""
+
+    origin: Origin
+    atoms: Indices
+    target: tuple[float, float, float]
+    rest_squared: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HoldForce:
+    """j ← 0: exactly opposite to everything else, after everything else."""
+
+    origin: Origin
+    atoms: Indices
+
+
+ExternalForce: TypeAlias = DampingForce | PushForce | OscillateForce | TorqueForce | TetherForce | HoldForce
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Model:
+    """All that stays constant in a run; every array is read-only.
+
+    Attributes:
+        title: what the scene calls itself.
+        time_step: τ [time].
+        n_atoms: number of atoms; they are numbered 0 … n_atoms − 1.
+        groups: spans of atoms, in order.
+        bonds: one force table per declared `bonds` entry, in order.
+        collisions: one force table per declared `collisions` entry, in order.
+        forces: external forces in order of declaration.
+    """
+
+    title: str
+    time_step: float
+    n_atoms: int
+    groups: tuple[GroupSpan, ...]
+    bonds: tuple[BondTable, ...]
+    collisions: tuple[CollisionTable, ...]
+    forces: tuple[ExternalForce, ...]
+
+    def group_of(self, atom: int) -> GroupSpan:
+        """Return the group that an atom belongs to."""
+        return next(group for group in self.groups if group.start <= atom < group.stop)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class State:
+    """All that changes in a run, at one round.
+
+    Attributes:
+        round_index: iteration rounds done.
+        position: atom centres c [length], (n_atoms, 3) float64.
+        velocity: v [length per unit of time], (n_atoms, 3) float64.
+    """
+
+    round_index: int
+    position: Floats
+    velocity: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observables:
+    """What is measured of a state.
+
+    Attributes:
+        kinetic_energy: ½ Σ |v|².
+        potential_energy_bonds: (1/τ) Σ U over all bonds; the sum of the three energies is conserved as τ → 0.
+        potential_energy_collisions: (1/τ) Σ U over all collision pairs in contact.
+        momentum: Σ v, (3,) float64.
+        angular_momentum: Σ c × v, (3,) float64.
+        contacts: number of collision pairs in contact (centres less than 2 apart).
+    """
+
+    kinetic_energy: float
+    potential_energy_bonds: float
+    potential_energy_collisions: float
+    momentum: Floats
+    angular_momentum: Floats
+    contacts: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """A recorded round; a copy that is safe to keep.
+
+    Attributes:
+        round_index: iteration rounds done.
+        time: round_index · τ [time].
+        position: atom centres [length], (n_atoms, 3) float64.
+        velocity: [length per unit of time], (n_atoms, 3) float64.
+        digest: the state digest, 64 hexadecimal digits.
+        observables: what was measured of it.
+    """
+
+    round_index: int
+    time: float
+    position: Floats
+    velocity: Floats
+    digest: str
+    observables: Observables
+
+    @property
+    def state(self) -> State:
+        """The state to go on from: nothing else of a run has to be kept."""
+        return State(self.round_index, self.position, self.velocity)

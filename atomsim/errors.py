@@ -1,0 +1,59 @@
+"""Every error a user can cause, with the exit code it ends in; knows nothing of scenes, arrays or files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+class AtomsimError(Exception):
+    """An error with a message for the user; the command line prints the message and exits with `exit_code`."""
+
+    exit_code = 1
+
+
+class RunError(AtomsimError):
+    """The run failed for a reason outside the scene: disk, memory, a file held by someone else (exit code 1)."""
+
+
+class InputError(AtomsimError):
+    """Bad usage or bad input: a path, an option, a file that is not ours (exit code 2)."""
+
+    exit_code = 2
+
+
+class BlowUpError(AtomsimError):
+    """The numbers of a simulation left the finite (exit code 3)."""
+
+    exit_code = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A place in a text that a person wrote: file as they named it, line and column counted from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One mistake in a scene: where it stands, the dotted path of the value, and what is wrong with the remedy."""
+
+    mark: Mark
+    path: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.mark}: {self.path}: {self.message}" if self.path else f"{self.mark}: {self.message}"
+
+
+class SceneError(InputError):
+    """A scene with mistakes; carries all of them, in the order of the file (exit code 2)."""
+
+    def __init__(self, problems: list[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in problems))

@@ -1,0 +1,57 @@
+"""Version 1 of the scene language as frozen records; the string below each field documents it everywhere."""
+
+from atomsim.scene.language.base import Declaration, Rest, Vector
+from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
+from atomsim.scene.language.groups import (
+    AtomsGroup,
+    BlockGroup,
+    Group,
+    PlaneGroup,
+    PolygonGroup,
+    RingGroup,
+    Rotation,
+    Spin,
+    StringGroup,
+)
+from atomsim.scene.language.rules import (
+    AllPairsBonds,
+    Bonds,
+    Collisions,
+    DistanceThresholdBonds,
+    ListedBonds,
+    NeighbourBonds,
+)
+from atomsim.scene.language.scene import Camera, Jitter, Render, Scene
+
+__all__ = [
+    "AllPairsBonds",
+    "AtomsGroup",
+    "BlockGroup",
+    "Bonds",
+    "Camera",
+    "Collisions",
+    "Damping",
+    "Declaration",
+    "DistanceThresholdBonds",
+    "Force",
+    "Gravity",
+    "Group",
+    "Hold",
+    "Jitter",
+    "ListedBonds",
+    "NeighbourBonds",
+    "Oscillate",
+    "PlaneGroup",
+    "PolygonGroup",
+    "Push",
+    "Render",
+    "Rest",
+    "RingGroup",
+    "Rotation",
+    "Scene",
+    "Spin",
+    "StringGroup",
+    "Tether",
+    "Torque",
+    "Vector",
+]

@@ -1,0 +1,134 @@
+"""The words that all declarations share: numbers, vectors, axes, names, colours; knows no declaration."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from atomsim.scene.css_colors import CSS_COLORS
+from atomsim.scene.selection import SelectionSyntaxError, parse_selection
+
+
+class Declaration(BaseModel):
+    """Base of everything in a scene: frozen, no unknown keys, no silent conversion between types."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, defer_build=True)
+
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+"""A finite number."""
+
+Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
+"""A finite number above zero."""
+
+NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
+"""A finite number, zero or more."""
+
+Count = Annotated[int, Field(ge=1)]
+"""A whole number, one or more."""
+
+Round = Annotated[int, Field(ge=0)]
+"""An iteration round: a whole number, zero or more."""
+
+Vector = Annotated[tuple[Number, Number, Number], Field(strict=False)]
+"""Three finite numbers: x, y, z."""
+
+
+def _check_direction(value: Vector) -> Vector:
+    if not any(value):
+        raise PydanticCustomError("zero_axis", "an axis needs a direction, not [0, 0, 0]")
+    return value
+
+
+def _spell_out_axis(value: Any) -> Any:
+    letters = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    if isinstance(value, str):
+        if value not in letters:
+            raise PydanticCustomError("axis", "an axis is x, y, z or a direction [x, y, z]")
+        return letters[value]
+    return value
+
+
+AxisLetter = Literal["x", "y", "z"]
+
+Axis = Annotated[
+    Vector,
+    AfterValidator(_check_direction),
+    BeforeValidator(_spell_out_axis),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": ["x", "y", "z"]},
+                {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+            ]
+        }
+    ),
+]
+"""A direction: x, y, z or three numbers, of any length but zero."""
+
+
+NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_-]*$"
+
+
+def _check_name(value: str) -> str:
+    if not re.fullmatch(NAME_PATTERN, value):
+        raise PydanticCustomError("name", "a name has letters, digits, _ and -, and does not begin with a digit or -")
+    if value == "all":
+        raise PydanticCustomError("name", "`all` already means every atom; choose another name")
+    return value
+
+
+Name = Annotated[str, AfterValidator(_check_name), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})]
+"""A name that a person gives: letters, digits, `_` and `-`."""
+
+
+def _check_color(value: str) -> str:
+    if value.lower() not in CSS_COLORS and not re.fullmatch(r"#(?:[0-9a-fA-F]{3}){1,2}", value):
+        raise PydanticCustomError("color", "a color is a CSS name (steelblue) or #rgb or #rrggbb")
+    return value
+
+
+Color = Annotated[str, AfterValidator(_check_color)]
+"""A CSS colour name such as `steelblue`, or `#rgb`, or `#rrggbb`."""
+
+
+def _check_selection(value: Any) -> Any:
+    items = (value,) if isinstance(value, str) else value
+    if not isinstance(items, (tuple, list)) or not items or not all(isinstance(item, str) for item in items):
+        raise PydanticCustomError("selection", "a selection is a group name such as `ring`, `ring[0:10]`, or a list")
+    for item in items:
+        try:
+            parse_selection(item)
+        except SelectionSyntaxError as error:
+            raise PydanticCustomError("selection", "{why}", {"why": str(error)}) from None
+    return tuple(items)
+
+
+_SELECTION_SCHEMA = {
+    "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}],
+}
+
+Selection = Annotated[tuple[str, ...], BeforeValidator(_check_selection), WithJsonSchema(_SELECTION_SCHEMA)]
+"""An expression that names atoms: `ring`, `ring[0:10]`, `floor[0, :]`, `all`, or a list of these (their union)."""
+
+Pair = Annotated[tuple[Selection, Selection], Field(strict=False)]
+"""Two selections."""
+
+
+def _check_rest(value: Any) -> Any:
+    if value == "initial":
+        return value
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < float("inf"):
+        raise PydanticCustomError("rest", "`rest` is `initial` or a number, zero or more")
+    return float(value)
+
+
+Rest = Annotated[
+    float | Literal["initial"],
+    BeforeValidator(_check_rest),
+    WithJsonSchema({"anyOf": [{"const": "initial"}, {"type": "number", "minimum": 0}]}),
+]
+"""A desired distance: `initial` (the distance at the start) or a number."""

@@ -1,0 +1,108 @@
+"""Bonds and collisions: what holds together and what may touch; knows no atoms, only selections."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from atomsim.scene.language.base import Count, Declaration, Pair, Positive, Rest, Round, Selection
+
+
+def _require_one(declaration: Declaration, *keys: str) -> None:
+    """Refuse a declaration that does not say exactly one of the keys."""
+    given = [key for key in keys if getattr(declaration, key) is not None]
+    if len(given) != 1:
+        names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
+        found = " and ".join(f"`{key}`" for key in given) if given else "none of them"
+        raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", {"names": names, "found": found})
+
+
+class BondBase(Declaration):
+    """What every bond declaration has besides its rule."""
+
+    within: Selection | None = None
+    """A group (or a list of groups): the rule applies inside each."""
+    rest: Rest = "initial"
+    """The desired distance of each pair: `initial` (its distance at the start) or a number [length]."""
+
+
+class BondBetweenBase(BondBase):
+    """A bond declaration that may also join two groups."""
+
+    between: Pair | None = None
+    """Two groups: the rule applies to pairs with one atom in each."""
+
+    @model_validator(mode="after")
+    def _check_where(self) -> BondBetweenBase:
+        _require_one(self, "within", "between")
+        return self
+
+
+class AllPairsBonds(BondBetweenBase):
+    """Every pair: rigid bodies."""
+
+    rule: Literal["all-pairs"]
+    """Every pair is bound."""
+
+
+class NeighbourBonds(BondBase):
+    """Atoms next to each other along a string: threads and rings."""
+
+    rule: Literal["neighbour"]
+    """Pairs whose indices differ by at most `reach`."""
+    within: Selection
+    """A group (or a list of groups): the rule applies inside each."""
+    reach: Count = 1
+    """The largest index difference that is bound."""
+    closed: bool | None = None
+    """Whether the last atom is next to the first; by default true for a whole ring or polygon, else false."""
+
+
+class DistanceThresholdBonds(BondBetweenBase):
+    """Atoms near each other: surfaces and solids."""
+
+    rule: Literal["distance-threshold"]
+    """Pairs with 0 < distance < `threshold`."""
+    threshold: Positive
+    """The distance from which on nothing is bound [length, or grid steps with `metric: grid`]."""
+    metric: Literal["space", "grid"] = "space"
+    """`space`: distance of the initial positions; `grid`: distance in grid steps inside a plane or block."""
+
+
+class ListedBonds(BondBetweenBase):
+    """Pairs as listed."""
+
+    rule: Literal["pairs"]
+    """The pairs listed under `pairs`."""
+    pairs: Annotated[
+        tuple[Annotated[tuple[Round, Round], Field(strict=False)], ...], Field(strict=False, min_length=1)
+    ]
+    """[[i, k], …]: indices into `within`, or the first into A and the second into B of `between: [A, B]`."""
+
+
+Bonds = Annotated[
+    AllPairsBonds | NeighbourBonds | DistanceThresholdBonds | ListedBonds,
+    Field(discriminator="rule"),
+]
+
+
+class Collisions(Declaration):
+    """Pairs of atoms that push each other apart when they overlap (centres less than 2 apart)."""
+
+    within: Selection | None = None
+    """A group (or a list of groups): atoms inside each collide with one another."""
+    min_gap: Count | None = None
+    """With `within`: the smallest index difference that collides (default 1)."""
+    between: Pair | None = None
+    """Two groups: every atom of one collides with every atom of the other."""
+    among: Annotated[tuple[Selection, ...], Field(strict=False, min_length=2)] | None = None
+    """Two or more groups: atoms of different groups collide."""
+
+    @model_validator(mode="after")
+    def _check_where(self) -> Collisions:
+        _require_one(self, "within", "between", "among")
+        if self.min_gap is not None and self.within is None:
+            raise PydanticCustomError("min_gap", "`min_gap` goes with `within` only")
+        return self

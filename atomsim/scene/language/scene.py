@@ -1,0 +1,89 @@
+"""The top level of a scene and how it is shown; knows the declarations, not how they compile."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from atomsim.scene.language.base import (
+    AxisLetter,
+    Color,
+    Count,
+    Declaration,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    Round,
+    Vector,
+)
+from atomsim.scene.language.forces import Force
+from atomsim.scene.language.groups import Group
+from atomsim.scene.language.rules import Bonds, Collisions
+
+
+class Jitter(Declaration):
+    """A tiny seeded disturbance of the initial positions that breaks symmetry the same way every time."""
+
+    amplitude: NotNegative
+    """Each coordinate moves by a uniform amount within ± this [length]."""
+    seed: Round = 1
+    """Seed of the random numbers; the same seed gives the same disturbance."""
+
+
+class Camera(Declaration):
+    """From where and how large the strip shows the scene."""
+
+    azimuth: Number = 30.0
+    """Direction of the viewer about the up axis [degrees]."""
+    elevation: Number = 20.0
+    """Height of the viewer above the horizontal [degrees]."""
+    up: AxisLetter = "z"
+    """The axis that points up in the picture."""
+    look_at: Vector | None = None
+    """The point in the middle of the picture [length]; by default the middle of what the strip shows."""
+    width: Positive | None = None
+    """The visible width [length]; by default everything that the strip shows fits."""
+
+
+class Render(Declaration):
+    """How `atomsim render` shows the trajectory; everything has a default."""
+
+    rounds: Annotated[tuple[Round, ...], Field(strict=False, min_length=1)] | None = None
+    """The rounds that make the strip; by default six evenly spread ones."""
+    camera: Camera = Camera()
+    """From where the scene is seen."""
+    colors: dict[Name, Color] = {}
+    """Colours by group; they go before the group's own `color`."""
+    background: Color = "#f5f5f7"
+    """Colour behind the atoms."""
+
+
+class Scene(Declaration):
+    """A scene: groups of atoms, what binds them, what may collide, what acts from outside."""
+
+    atomsim: Literal[1]
+    """Version of the scene language."""
+    title: str = ""
+    """One line that says what the scene shows."""
+    description: str = ""
+    """As much as you like to say about it."""
+    time_step: Positive
+    """τ, by which velocities move positions in each round [time]."""
+    rounds: Count
+    """Iteration rounds to run."""
+    record_every: Count = 10
+    """A frame is written at round 0, every so many rounds, and at the last round."""
+    jitter: Jitter | None = None
+    """A seeded disturbance of the initial positions."""
+    groups: Annotated[dict[Name, Group], Field(min_length=1)]
+    """What there is, by name; atoms are numbered in order of declaration."""
+    bonds: dict[Name, Bonds] = {}
+    """What holds together, by name; one force table each."""
+    collisions: dict[Name, Collisions] = {}
+    """What may touch, by name; one force table each."""
+    forces: dict[Name, Force] = {}
+    """What acts from outside, by name, applied in order of declaration."""
+    render: Render = Render()
+    """How `atomsim render` shows the trajectory."""
