@@ -71,7 +71,7 @@ class Between:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CollisionTable:
-    """The pairs of one `collisions` declaration as the union of its blocks; never expanded, for a fluid has 10¹¹ of them."""
+    """The pairs of one `collisions` declaration as the union of its blocks; never expanded: a fluid has 10¹¹."""
 
     origin: Origin
     blocks: tuple[Within | Between, ...]

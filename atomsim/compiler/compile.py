@@ -1,0 +1,337 @@
+"""From a scene to a model and its first state; knows the scene language and the records of the core, no stepper."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+from typing import TypeVar, assert_never
+
+import numpy as np
+
+from atomsim.compiler.coincident import coincident_pairs
+from atomsim.compiler.pairs import RuleError, expand
+from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
+from atomsim.compiler.shapes import count_atoms, place, unit
+from atomsim.core.memory import free_memory, readable_bytes
+from atomsim.core.model import (
+    Between,
+    BondTable,
+    CollisionTable,
+    DampingForce,
+    ExternalForce,
+    Floats,
+    GroupSpan,
+    HoldForce,
+    Indices,
+    Model,
+    Origin,
+    OscillateForce,
+    PushForce,
+    State,
+    TetherForce,
+    TorqueForce,
+    Within,
+)
+from atomsim.core.near import squared_distance
+from atomsim.errors import Problem, SceneError
+from atomsim.scene.css_colors import CSS_COLORS
+from atomsim.scene.language import (
+    BlockGroup,
+    Bonds,
+    Collisions,
+    Damping,
+    Force,
+    Gravity,
+    Hold,
+    Jitter,
+    Oscillate,
+    PlaneGroup,
+    PolygonGroup,
+    Push,
+    Rest,
+    RingGroup,
+    Scene,
+    Tether,
+    Torque,
+)
+from atomsim.scene.source import Path, Source
+
+PALETTE = ("#4682b4", "#b22222", "#2e8b57", "#daa520", "#8a5ba5", "#d2691e", "#5f9ea0", "#c0538c")
+"""Colours of groups that do not choose one, in order of declaration."""
+
+BYTES_PER_ATOM = 600
+"""What an atom costs while a scene compiles and runs, beside its pairs."""
+
+BYTES_PER_PAIR = 100
+"""What a bound pair costs while a scene compiles."""
+
+Array = TypeVar("Array", Floats, Indices)
+
+
+def compile_scene(scene: Scene, source: Source | None = None) -> tuple[Model, State]:
+    """Compile a scene to flat force tables and its first state.
+
+    Args:
+        scene: what a person wrote.
+        source: where it was written, for messages and for the origin of every table.
+
+    Returns:
+        The model, constant in a run, and the state at round 0; their arrays are read-only.
+
+    Raises:
+        SceneError: selections that name no atoms, tables without pairs, coincident atoms that are bound or collide,
+            or more atoms or pairs than fit into memory; all mistakes at once.
+    """
+    return _Compiler(scene, source or Source()).compile()
+
+
+class _Compiler:
+    """One compilation: what has been placed so far, and the mistakes found so far."""
+
+    def __init__(self, scene: Scene, source: Source) -> None:
+        self._scene = scene
+        self._source = source
+        self._problems: list[Problem] = []
+
+    def compile(self) -> tuple[Model, State]:
+        """Compile every section in order and report all mistakes together."""
+        scene = self._scene
+        layouts = self._lay_out()
+        n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
+        self._require_room(n_atoms)
+        self._selections = Selections(layouts, n_atoms)
+        placed = [place(group) for group in scene.groups.values()]
+        self._placed = np.concatenate([position for position, _ in placed])
+        velocity = np.concatenate([velocity for _, velocity in placed])
+        self._require_finite(layouts, velocity)
+        self._position = _jittered(self._placed, scene.jitter)
+        bonds = [self._bond_table(name, entry) for name, entry in scene.bonds.items()]
+        collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
+        forces = [self._force(name, entry) for name, entry in scene.forces.items()]
+        self._stop_if_wrong()
+        model = Model(
+            title=scene.title,
+            time_step=scene.time_step,
+            n_atoms=n_atoms,
+            groups=self._spans(layouts),
+            bonds=_all_of(bonds),
+            collisions=_all_of(collisions),
+            forces=_all_of(forces),
+        )
+        return model, State(0, _read_only(self._position), _read_only(velocity))
+
+    def _lay_out(self) -> dict[str, GroupLayout]:
+        """Number the atoms group after group."""
+        layouts = {}
+        start = 0
+        for name, group in self._scene.groups.items():
+            stop = start + count_atoms(group)
+            grid = tuple(group.counts) if isinstance(group, (PlaneGroup, BlockGroup)) else (stop - start,)
+            layouts[name] = GroupLayout(start, stop, grid, isinstance(group, (RingGroup, PolygonGroup)))
+            start = stop
+        return layouts
+
+    def _spans(self, layouts: dict[str, GroupLayout]) -> tuple[GroupSpan, ...]:
+        """Give every group its place, colour and origin."""
+        chosen = self._scene.render.colors
+        return tuple(
+            GroupSpan(
+                name=name,
+                start=layouts[name].start,
+                stop=layouts[name].stop,
+                color=_hex_color(chosen.get(name) or group.color or PALETTE[number % len(PALETTE)]),
+                origin=self._origin("groups", name),
+            )
+            for number, (name, group) in enumerate(self._scene.groups.items())
+        )
+
+    def _bond_table(self, name: str, bonds: Bonds) -> BondTable | None:
+        """Expand a rule to pairs with their desired distances."""
+        path = ("bonds", name)
+        try:
+            self._require_pair_room(path, bonds)
+            first, second = expand(bonds, self._selections, self._placed)
+        except RuleError as error:
+            self._complain((*path, *_parts(error.key)), str(error))
+            return None
+        except SelectionError as error:
+            self._complain(path, str(error))
+            return None
+        if self._found_coincident(path, first, second, "bound"):
+            return None
+        initial = squared_distance(self._placed[first].T, self._placed[second].T)
+        rest_squared = _rest_squared(bonds.rest, initial)
+        return BondTable(self._origin(*path), _read_only(first), _read_only(second), _read_only(rest_squared))
+
+    def _collision_table(self, name: str, collisions: Collisions) -> CollisionTable | None:
+        """Describe which atoms may touch; pairs are found only when they are near."""
+        path = ("collisions", name)
+        try:
+            table = CollisionTable(self._origin(*path), tuple(self._blocks(collisions)))
+        except SelectionError as error:
+            self._complain(path, str(error))
+            return None
+        if not any(_has_pairs(block) for block in table.blocks):
+            self._complain(path, "nothing can collide: there are no two different atoms here")
+            return None
+        first, second = coincident_pairs(self._placed, table)
+        return None if self._found_coincident(path, first, second, "set to collide") else table
+
+    def _blocks(self, collisions: Collisions) -> Iterable[Within | Between]:
+        """Yield the blocks of pairs that a declaration is the union of."""
+        atoms = self._selections.atoms
+        if collisions.within is not None:
+            yield from (Within(_read_only(atoms((part,))), collisions.min_gap or 1) for part in collisions.within)
+        elif collisions.between is not None:
+            left, right = collisions.between
+            yield Between(_read_only(atoms(left)), _read_only(atoms(right)))
+        else:
+            sides = [_read_only(atoms(side)) for side in collisions.among or ()]
+            for number, left_atoms in enumerate(sides):
+                yield from (Between(left_atoms, right_atoms) for right_atoms in sides[number + 1 :])
+
+    def _force(self, name: str, force: Force) -> ExternalForce | None:
+        """Compile one external force."""
+        path = ("forces", name)
+        origin = self._origin(*path)
+        try:
+            atoms = _read_only(self._selections.atoms(force.acts_on))
+            match force:
+                case Damping():
+                    return DampingForce(origin, atoms, force.coefficient)
+                case Gravity():
+                    return PushForce(origin, atoms, force.impulse, 0, None)
+                case Push():
+                    return PushForce(origin, atoms, force.impulse, force.from_round, force.until_round)
+                case Oscillate():
+                    return OscillateForce(origin, atoms, force.impulse, force.period, force.phase)
+                case Torque():
+                    about = atoms if force.about is None else _read_only(self._selections.atoms(force.about))
+                    x, y, z = unit(force.axis).tolist()
+                    return TorqueForce(origin, atoms, (x, y, z), force.magnitude, about)
+                case Tether():
+                    return self._tether(origin, atoms, force)
+                case Hold():
+                    return HoldForce(origin, atoms)
+                case _:
+                    assert_never(force)
+        except SelectionError as error:
+            self._complain(path, str(error))
+            return None
+
+    def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> TetherForce:
+        initial = squared_distance(self._placed[atoms].T, np.array(force.target)[:, None])
+        return TetherForce(origin, atoms, force.target, _read_only(_rest_squared(force.rest, initial)))
+
+    def _found_coincident(self, path: Path, first: Indices, second: Indices, what: str) -> bool:
+        """Complain of a pair at distance zero, which has no direction to push in; before or after jitter."""
+        for position in (self._placed, self._position):
+            same = np.flatnonzero((position[first] == position[second]).all(axis=1))
+            if same.size:
+                one, other = int(first[same[0]]), int(second[same[0]])
+                more = f" ({same.size - 1} more pairs likewise)" if same.size > 1 else ""
+                self._complain(
+                    path, f"{self._name(one)} and {self._name(other)} are {what} but start at the same place{more}"
+                )
+                return True
+        return False
+
+    def _name(self, atom: int) -> str:
+        """Write an atom as the user would select it."""
+        start = 0
+        for name, group in self._scene.groups.items():
+            count = count_atoms(group)
+            if atom < start + count:
+                return f"{name}[{atom - start}]"
+            start += count
+        raise AssertionError(f"atom {atom} belongs to no group")
+
+    def _require_room(self, n_atoms: int) -> None:
+        """Refuse more atoms than fit into memory, before making any."""
+        self._require_memory(("groups",), n_atoms * BYTES_PER_ATOM, f"{n_atoms:,} atoms")
+        self._stop_if_wrong()
+
+    def _require_pair_room(self, path: Path, bonds: Bonds) -> None:
+        """Refuse an all-pairs rule whose pairs do not fit into memory, before making any."""
+        if bonds.rule != "all-pairs":
+            return
+        if bonds.between is not None:
+            left, right = (self._selections.atoms(side).size for side in bonds.between)
+            n_pairs = left * right
+        else:
+            sizes = [self._selections.atoms((part,)).size for part in bonds.within or ()]
+            n_pairs = sum(size * (size - 1) // 2 for size in sizes)
+        if n_pairs * BYTES_PER_PAIR > free_memory():
+            raise RuleError("rule", self._too_large(n_pairs * BYTES_PER_PAIR, f"{n_pairs:,} bonds"))
+
+    def _require_memory(self, path: Path, size: int, what: str) -> None:
+        if size > free_memory():
+            self._complain(path, self._too_large(size, what))
+
+    def _too_large(self, size: int, what: str) -> str:
+        return f"{what} need about {readable_bytes(size)} of memory, and {readable_bytes(free_memory())} are free"
+
+    def _require_finite(self, layouts: dict[str, GroupLayout], velocity: Floats) -> None:
+        """Refuse numbers that are finite one by one but not where they put the atoms."""
+        for name, layout in layouts.items():
+            atoms = slice(layout.start, layout.stop)
+            squared = squared_distance(self._placed[atoms].T, velocity[atoms].T)
+            if not np.isfinite(squared).all():
+                self._complain(("groups", name), "its numbers are too large to compute with")
+        self._stop_if_wrong()
+
+    def _origin(self, section: str, name: str) -> Origin:
+        mark = self._source.mark((section, name))
+        return Origin(section, name, mark.file, mark.line)
+
+    def _complain(self, path: Path, message: str) -> None:
+        self._problems.append(self._source.problem(path, message))
+
+    def _stop_if_wrong(self) -> None:
+        if self._problems:
+            raise SceneError(self._problems)
+
+
+def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
+    """Disturb every coordinate by amplitude · (2u − 1), atom by atom, x then y then z."""
+    if jitter is None:
+        return position
+    uniform = random.Random(jitter.seed).random  # its stream is guaranteed to stay the same
+    noise = np.array([2.0 * uniform() - 1.0 for _ in range(position.size)])
+    return position + jitter.amplitude * noise.reshape(position.shape)
+
+
+def _rest_squared(rest: Rest, initial: Floats) -> Floats:
+    """Return r² per pair: the squared initial distance itself, without the detour through the root, or a number's."""
+    return initial if rest == "initial" else np.full(initial.shape, rest * rest)
+
+
+def _has_pairs(block: Within | Between) -> bool:
+    """Return whether a block of collisions holds any pair of different atoms."""
+    if isinstance(block, Within):
+        return block.atoms.size > block.min_gap
+    return np.union1d(block.left, block.right).size > 1
+
+
+def _hex_color(color: str) -> str:
+    """Return a colour as #rrggbb."""
+    color = CSS_COLORS.get(color.lower(), color).lower()
+    return color if len(color) == 7 else "#" + "".join(2 * digit for digit in color[1:])
+
+
+def _parts(key: str) -> Path:
+    return tuple(int(part) if part.isdigit() else part for part in key.split("."))
+
+
+def _all_of(entries: list[Entry | None]) -> tuple[Entry, ...]:
+    """Drop the entries that could not be compiled; their problems have been reported."""
+    return tuple(entry for entry in entries if entry is not None)
+
+
+def _read_only(array: Array) -> Array:
+    """Make an array safe to share."""
+    array.setflags(write=False)
+    return array
+
+
+Entry = TypeVar("Entry")

@@ -1,0 +1,158 @@
+"""From a bond rule to canonical pairs; knows selections and initial positions, nothing of rest distances or forces."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+import numpy as np
+
+from atomsim.compiler.selections import Selections
+from atomsim.core.model import Floats, Indices
+from atomsim.core.near import near_pairs
+from atomsim.scene.language import AllPairsBonds, Bonds, DistanceThresholdBonds, ListedBonds, NeighbourBonds
+
+Pairs = tuple[Indices, Indices]
+
+
+class RuleError(ValueError):
+    """A rule that makes no sense for the atoms it names; `key` is the part of the declaration to blame."""
+
+    def __init__(self, key: str, message: str) -> None:
+        self.key = key
+        super().__init__(message)
+
+
+def expand(bonds: Bonds, selections: Selections, position: Floats) -> Pairs:
+    """Return the pairs of a bond declaration, canonical: first < second, no duplicates, sorted.
+
+    Args:
+        bonds: the declaration.
+        selections: resolves its selections.
+        position: initial positions before jitter [length], (n_atoms, 3).
+
+    Raises:
+        RuleError: no pairs, or indices or a metric that do not fit.
+        SelectionError: a selection that names no atoms.
+    """
+    n_atoms = position.shape[0]
+    found = [pairs for pairs in _expand_each(bonds, selections, position) if pairs[0].size]
+    keys = [np.minimum(one, other) * n_atoms + np.maximum(one, other) for one, other in found]
+    key = np.unique(np.concatenate(keys)) if keys else np.empty(0, dtype=np.int64)
+    first, second = key // n_atoms, key % n_atoms
+    if not key.size:
+        raise RuleError(*_why_no_pairs(bonds))
+    return first, second
+
+
+def _expand_each(bonds: Bonds, selections: Selections, position: Floats) -> list[Pairs]:
+    """Apply the rule inside each group of `within`, or across `between`."""
+    if isinstance(bonds, NeighbourBonds):
+        return [_neighbours(bonds, expression, selections) for expression in bonds.within]
+    if bonds.between is not None:
+        left, right = (selections.atoms(side) for side in bonds.between)
+        return [_across(bonds, left, right, position)]
+    assert bonds.within is not None  # the language requires one of the two
+    return [_inside(bonds, expression, selections, position) for expression in bonds.within]
+
+
+def _neighbours(bonds: NeighbourBonds, expression: str, selections: Selections) -> Pairs:
+    """Pairs at most `reach` places apart in the selection, around the end where it is closed."""
+    atoms = selections.atoms((expression,))
+    layout = selections.whole_group(expression)
+    closed = bonds.closed if bonds.closed is not None else layout is not None and layout.is_closed
+    place = np.arange(atoms.size)
+    one: list[Indices] = []
+    other: list[Indices] = []
+    for gap in range(1, min(bonds.reach, atoms.size - 1) + 1):
+        lower = place if closed else place[:-gap]
+        upper = (lower + gap) % atoms.size
+        one.append(atoms[lower])
+        other.append(atoms[upper])
+    if not one:
+        return atoms[:0], atoms[:0]
+    return np.concatenate(one), np.concatenate(other)
+
+
+def _inside(
+    bonds: AllPairsBonds | DistanceThresholdBonds | ListedBonds,
+    expression: str,
+    selections: Selections,
+    position: Floats,
+) -> Pairs:
+    """Pairs inside one selection."""
+    atoms = selections.atoms((expression,))
+    match bonds:
+        case AllPairsBonds():
+            first, second = np.triu_indices(atoms.size, 1)
+            return atoms[first], atoms[second]
+        case DistanceThresholdBonds():
+            if bonds.metric == "space":
+                first, second = near_pairs(position[atoms].T, None, bonds.threshold)
+                return _apart(position, atoms[first], atoms[second])
+            places = selections.grid_places(expression)
+            if places is None:
+                raise RuleError("metric", f"`metric: grid` needs a plane or a block, and `{expression}` is neither")
+            first, second = near_pairs(_in_space(places), None, bonds.threshold)
+            return atoms[first], atoms[second]
+        case ListedBonds():
+            return _listed(bonds, atoms, atoms)
+        case _:
+            assert_never(bonds)
+
+
+def _across(
+    bonds: AllPairsBonds | DistanceThresholdBonds | ListedBonds, left: Indices, right: Indices, position: Floats
+) -> Pairs:
+    """Pairs with one atom on either side; an atom on both sides is not bound to itself."""
+    match bonds:
+        case AllPairsBonds():
+            one, other = np.repeat(left, right.size), np.tile(right, left.size)
+            return one[one != other], other[one != other]
+        case DistanceThresholdBonds():
+            if bonds.metric == "grid":
+                raise RuleError("metric", "`metric: grid` counts steps inside one group; it goes with `within`")
+            first, second = near_pairs(position[left].T, position[right].T, bonds.threshold)
+            return _apart(position, left[first], right[second])
+        case ListedBonds():
+            return _listed(bonds, left, right)
+        case _:
+            assert_never(bonds)
+
+
+def _apart(position: Floats, one: Indices, other: Indices) -> Pairs:
+    """Keep the pairs with 0 < d."""
+    apart = (position[one] != position[other]).any(axis=1)
+    return one[apart], other[apart]
+
+
+def _listed(bonds: ListedBonds, left: Indices, right: Indices) -> Pairs:
+    """Look the listed indices up in their selections."""
+    for number, (i, k) in enumerate(bonds.pairs):
+        for index, atoms in ((i, left), (k, right)):
+            if index >= atoms.size:
+                raise RuleError(
+                    f"pairs.{number}",
+                    f"index {index} is out of range: there are {atoms.size} atoms, 0 to {atoms.size - 1}",
+                )
+        if left[i] == right[k]:
+            raise RuleError(f"pairs.{number}", f"[{i}, {k}] would bind an atom to itself")
+    one, other = np.array(bonds.pairs, dtype=np.int64).T
+    return left[one], right[other]
+
+
+def _in_space(places: Indices) -> Floats:
+    """Return grid places as positions with spacing one, (3, n)."""
+    position = np.zeros((3, places.shape[0]))
+    position[: places.shape[1]] = places.T
+    return position
+
+
+def _why_no_pairs(bonds: Bonds) -> tuple[str, str]:
+    """Say why a declaration binds nothing."""
+    if isinstance(bonds, DistanceThresholdBonds):
+        unit = "grid steps" if bonds.metric == "grid" else "length units"
+        return "threshold", f"nothing is bound: no two atoms are nearer than {bonds.threshold:g} {unit}"
+    return (
+        "within" if bonds.within is not None else "between",
+        "nothing is bound: there are no two different atoms here",
+    )

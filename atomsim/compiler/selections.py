@@ -1,0 +1,101 @@
+"""From selection expressions to atoms; knows groups by name, span and grid, nothing of rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from atomsim.core.model import Indices
+from atomsim.scene.selection import parse_selection
+
+
+class SelectionError(ValueError):
+    """A selection that names no atoms; the message says why and what there is."""
+
+
+@dataclass(frozen=True, slots=True)
+class GroupLayout:
+    """Where a group's atoms are numbered: start ≤ atom < stop, and the shape of its grid, x first.
+
+    `is_closed` tells whether the last atom is next to the first.
+    """
+
+    start: int
+    stop: int
+    grid: tuple[int, ...]
+    is_closed: bool
+
+
+class Selections:
+    """Resolves expressions against the groups of a scene.
+
+    Args:
+        layouts: the groups, by name.
+        n_atoms: number of atoms of the scene.
+    """
+
+    def __init__(self, layouts: Mapping[str, GroupLayout], n_atoms: int) -> None:
+        self._layouts = layouts
+        self._n_atoms = n_atoms
+
+    def atoms(self, selection: tuple[str, ...]) -> Indices:
+        """Return the atoms of a selection (the union of its expressions), ascending, without duplicates.
+
+        Raises:
+            SelectionError: an unknown group, an index out of range, or nothing selected.
+        """
+        parts = [self._atoms_of(expression) for expression in selection]
+        return parts[0] if len(parts) == 1 else np.unique(np.concatenate(parts))
+
+    def whole_group(self, expression: str) -> GroupLayout | None:
+        """Return the layout of the group that an expression names as a whole, else None."""
+        part = parse_selection(expression)
+        return None if part.axes else self._layouts.get(part.group)
+
+    def grid_places(self, expression: str) -> Indices | None:
+        """Return the grid places of the atoms selected, (n_selected, n_axes), or None where there is no grid."""
+        part = parse_selection(expression)
+        layout = self._layouts.get(part.group)
+        if layout is None or len(layout.grid) < 2:
+            return None
+        index = self._atoms_of(expression) - layout.start
+        return np.stack(np.unravel_index(index, layout.grid[::-1])[::-1], axis=1)
+
+    def _atoms_of(self, expression: str) -> Indices:
+        """Return the atoms of one expression, ascending."""
+        part = parse_selection(expression)
+        if part.group == "all":
+            return np.arange(self._n_atoms)
+        layout = self._layouts.get(part.group)
+        if layout is None:
+            raise SelectionError(f"there is no group `{part.group}`; there are {', '.join(self._layouts)}")
+        if not part.axes:
+            return np.arange(layout.start, layout.stop)
+        grid = layout.grid if len(part.axes) > 1 else (layout.stop - layout.start,)
+        if len(part.axes) != len(grid):
+            shape = " × ".join(str(count) for count in layout.grid)
+            raise SelectionError(
+                f"`{expression}` has {len(part.axes)} indices, but {part.group} is {shape} atoms "
+                f"({'one index' if len(layout.grid) == 1 else f'one or {len(layout.grid)} indices'})"
+            )
+        places = [_along_axis(axis, count, expression, part.group) for axis, count in zip(part.axes, grid, strict=True)]
+        index = np.zeros((1,) * len(grid), dtype=np.int64)
+        stride = 1
+        for number, (place, count) in enumerate(zip(places, grid, strict=True)):
+            index = index + place.reshape([-1 if other == number else 1 for other in range(len(grid))]) * stride
+            stride *= count
+        return layout.start + np.sort(index, axis=None)
+
+
+def _along_axis(axis: int | slice, count: int, expression: str, group: str) -> Indices:
+    """Return the places that an index or slice selects of `count`."""
+    if isinstance(axis, slice):
+        places = np.arange(count)[axis]
+        if not places.size:
+            raise SelectionError(f"`{expression}` selects no atoms: {group} has {count} there, 0 to {count - 1}")
+        return places
+    if not -count <= axis < count:
+        raise SelectionError(f"`{expression}` is out of range: {group} has {count} there, 0 to {count - 1}")
+    return np.array([axis % count])

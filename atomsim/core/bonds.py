@@ -1,0 +1,292 @@
+"""Bond subtotals in three equivalent forms, dense, offset and general; knows nothing of rounds, collisions or scenes.
+
+Whatever the form, each atom's bond forces fb = (c_k − c_i) · (1 − r²/d²) (paper section 2.3) are added over partners in
+increasing partner index, starting from +0.0, so the forms agree to the last bit. Positions are (3, n_atoms), one row
+per component, which lets every operation run along contiguous memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from atomsim.core.model import BondTable, Floats, Indices
+
+DENSE_FILL = 0.6
+"""From this share of all pairs of a span on, computing all of them beats gathering the bound ones."""
+
+RUN_PAIRS = 48
+"""From this many pairs per run on, slices beat gathering."""
+
+FEW_PAIRS = 300
+"""Below this number of pairs calls cost more than pairs, and one gathering form serves a whole table."""
+
+RUN_GAP = 8
+"""So many missing pairs in a row are cheaper to compute in vain than to begin a new run for."""
+
+TILE_BYTES = 1 << 19
+"""A tile of differences should stay in the cache of one core."""
+
+
+class BondForm(Protocol):
+    """The pairs of a table inside one span of atoms, in the form that is fastest for them.
+
+    Attributes:
+        name: what the form is called in reports.
+        atoms: the span of atoms that the pairs touch.
+    """
+
+    name: str
+    atoms: slice
+
+    def subtotal(self, position: Floats) -> Floats:
+        """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
+
+
+def bond_forms(table: BondTable, resting: Indices | None = None) -> list[BondForm]:
+    """Cut a table into spans that share no atom and give each the form that suits it.
+
+    Args:
+        table: the pairs.
+        resting: atoms whose impulse is going to be discarded; pairs between two of them are left out.
+
+    Returns:
+        Forms in order of atoms; no atom belongs to two of them.
+    """
+    first, second, rest_squared = table.first, table.second, table.rest_squared
+    if resting is not None and resting.size and first.size:
+        is_resting = np.zeros(int(second.max()) + 1, dtype=bool)
+        is_resting[resting[resting < is_resting.size]] = True
+        kept = ~(is_resting[first] & is_resting[second])
+        first, second, rest_squared = first[kept], second[kept], rest_squared[kept]
+    if first.size < FEW_PAIRS:
+        return [GeneralForm(*_local(first, second), rest_squared)] if first.size else []
+    return [_form(first[part], second[part], rest_squared[part]) for part in _disjoint_spans(first, second)]
+
+
+def _disjoint_spans(first: Indices, second: Indices) -> Iterator[slice]:
+    """Cut sorted pairs wherever no pair reaches over the cut."""
+    if not first.size:
+        return
+    reach = np.maximum.accumulate(second)
+    cuts = np.flatnonzero(first[1:] > reach[:-1]) + 1
+    bounds = [0, *cuts.tolist(), first.size]
+    yield from map(slice, bounds[:-1], bounds[1:])
+
+
+def _local(first: Indices, second: Indices) -> tuple[slice, Indices, Indices]:
+    """Return the span of atoms that sorted pairs touch, and the pairs counted from its start."""
+    atoms = slice(int(first[0]), int(second.max()) + 1)
+    return atoms, first - atoms.start, second - atoms.start
+
+
+def _form(first: Indices, second: Indices, rest_squared: Floats) -> BondForm:
+    """Choose the form for the pairs of one span."""
+    atoms, first, second = _local(first, second)
+    n_atoms = atoms.stop - atoms.start
+    if first.size >= DENSE_FILL * n_atoms * (n_atoms - 1) / 2:
+        return DenseForm(atoms, first, second, rest_squared)
+    runs = list(_runs_of(first, second))
+    if first.size >= RUN_PAIRS * len(runs):
+        return OffsetForm(atoms, first, second, rest_squared, runs)
+    return GeneralForm(atoms, first, second, rest_squared)
+
+
+def square_distance(difference: Floats, squared: Floats, out: Floats) -> None:
+    """Set `out` (…) to d² = (dx·dx + dy·dy) + dz·dz of differences (3, …); `squared` is scratch, (3, …)."""
+    np.multiply(difference, difference, out=squared)
+    np.add(squared[0], squared[1], out=out)
+    np.add(out, squared[2], out=out)
+
+
+def weigh_bonds(weight: Floats, rest_squared: Floats) -> None:
+    """Turn d² into the bond's weight 1 − r² · (1/d²), in place; the force on i is weight · (c_k − c_i)."""
+    np.divide(1.0, weight, out=weight)
+    np.multiply(rest_squared, weight, out=weight)
+    np.subtract(1.0, weight, out=weight)
+
+
+class DenseForm:
+    """All pairs of a span at once: rows are partners, columns are atoms, and the sum runs down the rows.
+
+    The differences x_k − x_i come from the matrix product [x_k, 1] · [1; −x_i]: both its products are exact, so its
+    one addition rounds exactly as the subtraction does. Columns are cut into tiles to stay in the cache.
+    """
+
+    name = "dense"
+
+    def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats) -> None:
+        n_atoms = atoms.stop - atoms.start
+        n_tiles = max(1, min(n_atoms // 2, round(n_atoms * n_atoms * 48 / TILE_BYTES)))
+        edges = [n_atoms * tile // n_tiles for tile in range(n_tiles + 1)]
+        self.atoms = atoms
+        self._tiles = [
+            _DenseTile(slice(start, stop), n_atoms, first, second, rest_squared) for start, stop in pairwise(edges)
+        ]
+        self._left = np.ones((3, n_atoms, 2))
+        self._right = np.ones((3, 2, n_atoms))
+        largest = max(tile.rest_squared.size for tile in self._tiles)
+        self._scratch = np.empty((7, largest))
+        self._subtotal = np.empty((3, n_atoms))
+
+    def subtotal(self, position: Floats) -> Floats:
+        """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
+        span = position[:, self.atoms]
+        self._left[:, :, 0] = span
+        np.negative(span, out=self._right[:, 1, :])
+        for tile in self._tiles:
+            shape, size = tile.rest_squared.shape, tile.rest_squared.size
+            scratch = self._scratch.reshape(-1)[: 7 * size].reshape(7, *shape)
+            difference, squared, weight = scratch[:3], scratch[3:6], scratch[6]
+            np.matmul(self._left, self._right[:, :, tile.columns], out=difference)
+            square_distance(difference, squared, weight)
+            weight.reshape(-1)[tile.unbound] = np.inf  # no pair, no division by zero
+            weigh_bonds(weight, tile.rest_squared)
+            if tile.has_gaps:
+                weight.reshape(-1)[tile.unbound] = 0.0
+            np.multiply(difference, weight, out=difference)
+            np.add.reduce(difference, axis=1, out=self._subtotal[:, tile.columns])
+        return self._subtotal
+
+
+class _DenseTile:
+    """The constant part of some columns of a dense form: r² per (partner, atom) and the places that are no pair."""
+
+    def __init__(self, columns: slice, n_atoms: int, first: Indices, second: Indices, rest_squared: Floats) -> None:
+        self.columns = columns
+        self.rest_squared = np.zeros((n_atoms, columns.stop - columns.start))
+        is_bound = np.zeros(self.rest_squared.shape, dtype=bool)
+        for partner, atom in ((first, second), (second, first)):
+            inside = (atom >= columns.start) & (atom < columns.stop)
+            place = partner[inside], atom[inside] - columns.start
+            self.rest_squared[place] = rest_squared[inside]
+            is_bound[place] = True
+        self.unbound = np.flatnonzero(~is_bound)
+        self.has_gaps = self.unbound.size > columns.stop - columns.start
+        # an atom is no partner of itself either, but there the difference is zero
+
+
+class OffsetForm:
+    """Pairs of few distinct offsets k − i: each run of pairs is a slice, so nothing is gathered or scattered.
+
+    A run may pass over a few atoms that are not bound at its offset (the ends of a surface's rows); their weight is
+    set to zero, which adds exactly nothing.
+    """
+
+    name = "offset"
+
+    def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats, runs: list[Run]) -> None:
+        n_atoms = atoms.stop - atoms.start
+        ends = np.cumsum([run.stop - run.start for run in runs]).tolist()
+        pieces = [slice(start, stop) for start, stop in zip([0, *ends], ends, strict=False)]
+        self.atoms = atoms
+        self._rest_squared = np.zeros(ends[-1])
+        is_bound = np.zeros(ends[-1], dtype=bool)
+        for run, piece in zip(runs, pieces, strict=True):
+            mine = (second - first == run.offset) & (first >= run.start) & (first < run.stop)
+            place = first[mine] - run.start
+            self._rest_squared[piece][place] = rest_squared[mine]
+            is_bound[piece][place] = True
+        self._unbound = np.flatnonzero(~is_bound)
+        self._difference = np.empty((3, ends[-1]))
+        self._squared = np.empty((3, ends[-1]))
+        self._weight = np.empty(ends[-1])
+        self._subtotal = np.empty((3, n_atoms))
+        self._runs = [
+            (run.upper, run.lower, self._difference[:, piece]) for run, piece in zip(runs, pieces, strict=True)
+        ]  # offsets rise; so, for each atom, do its partners above, and its partners below fall
+
+    def subtotal(self, position: Floats) -> Floats:
+        """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
+        span, total, weight = position[:, self.atoms], self._subtotal, self._weight
+        for upper, lower, force in self._runs:
+            np.subtract(span[:, upper], span[:, lower], out=force)
+        square_distance(self._difference, self._squared, weight)
+        weight[self._unbound] = np.inf  # no pair, no division by zero
+        weigh_bonds(weight, self._rest_squared)
+        weight[self._unbound] = 0.0
+        np.multiply(self._difference, weight, out=self._difference)
+        total.fill(0.0)
+        for upper, _, force in reversed(self._runs):
+            total[:, upper] -= force
+        for _, lower, force in self._runs:
+            total[:, lower] += force
+        return total
+
+
+class Run(NamedTuple):
+    """Pairs (i, i + offset) for start ≤ i < stop, a few of which may not be bound."""
+
+    offset: int
+    start: int
+    stop: int
+
+    @property
+    def lower(self) -> slice:
+        """The pairs' lower atoms."""
+        return slice(self.start, self.stop)
+
+    @property
+    def upper(self) -> slice:
+        """The pairs' higher atoms."""
+        return slice(self.start + self.offset, self.stop + self.offset)
+
+
+def _runs_of(first: Indices, second: Indices) -> Iterator[Run]:
+    """Describe pairs as runs, in rising offset; a gap longer than RUN_GAP atoms begins a new one."""
+    offsets = second - first
+    for offset in np.unique(offsets).tolist():
+        atoms = first[offsets == offset]
+        breaks = np.flatnonzero(np.diff(atoms) > RUN_GAP) + 1
+        for run in np.split(atoms, breaks):
+            yield Run(offset, int(run[0]), int(run[-1]) + 1)
+
+
+class GeneralForm:
+    """Any pairs: gather both ends, scatter the forces with `bincount`, which adds in the order it is given."""
+
+    name = "general"
+
+    def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats) -> None:
+        self.atoms = atoms
+        self._first = first
+        self._second = second
+        self._rest_squared = rest_squared
+        self._n_atoms = atoms.stop - atoms.start
+        self._squared = np.empty((3, first.size))
+        self._weight = np.empty(first.size)
+        self._scatter = Scatter(first, second, self._n_atoms)
+
+    def subtotal(self, position: Floats) -> Floats:
+        """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
+        span = position[:, self.atoms]
+        force = np.take(span, self._second, axis=1)
+        force -= np.take(span, self._first, axis=1)
+        square_distance(force, self._squared, self._weight)
+        weigh_bonds(self._weight, self._rest_squared)
+        force *= self._weight
+        return self._scatter.total(force)
+
+
+class Scatter:
+    """Sums pair forces onto atoms: −force to the second atom, +force to the first, partners in increasing order.
+
+    Sorted pairs list an atom's lower partners where it is second, in increasing order, and its higher partners where
+    it is first: all second atoms followed by all first atoms is the order the convention asks for.
+    """
+
+    def __init__(self, first: Indices, second: Indices, n_atoms: int) -> None:
+        self._n_atoms = n_atoms
+        atom = np.concatenate((second, first))
+        self._place = np.concatenate((atom, atom + n_atoms, atom + 2 * n_atoms))
+        self._weight = np.empty((3, 2, first.size))
+
+    def total(self, force: Floats) -> Floats:
+        """Return the sum on each atom, (3, n_atoms), of pair forces (3, n_pairs)."""
+        np.negative(force, out=self._weight[:, 0])
+        self._weight[:, 1] = force
+        total: Floats = np.bincount(self._place, weights=self._weight.reshape(-1), minlength=3 * self._n_atoms)
+        return total.reshape(3, self._n_atoms)

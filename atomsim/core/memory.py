@@ -1,0 +1,30 @@
+"""How much memory is free; asked before anything large is allocated."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+
+def free_memory() -> int:
+    """Return the bytes that can be allocated without swapping, as the system estimates them."""
+    try:
+        for line in Path("/proc/meminfo").read_text().splitlines():
+            if line.startswith("MemAvailable:"):
+                return int(line.split()[1]) * 1024
+    except OSError:
+        pass  # no Linux: count the whole memory, which at least stops the absurd
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
+def readable_bytes(size: float) -> str:
+    """Write a number of bytes for people.
+
+    >>> readable_bytes(1_500_000), readable_bytes(999)
+    ('1.5 MB', '999 B')
+    """
+    for unit in ("B", "kB", "MB", "GB", "TB"):
+        if size < 1000:
+            return f"{size:.0f} {unit}" if unit == "B" or size >= 100 else f"{size:.1f} {unit}"
+        size /= 1000
+    return f"{size:.0f} PB"

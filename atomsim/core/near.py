@@ -1,0 +1,137 @@
+"""Finding pairs of atoms that are near each other without looking at all pairs; knows no forces and no tables.
+
+Both searches return a *superset-free* answer: exactly the pairs whose squared distance, computed as the convention
+says, is below the squared cutoff. How they look for them (tiles or cells) never shows in the result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from atomsim.core.model import Floats, Indices
+
+TILE = 1 << 18
+"""Pair distances held at a time: two megabytes per array."""
+
+DENSE_LIMIT = 1 << 22
+"""Up to so many pairs it is cheaper to look at all of them than to sort atoms into cells."""
+
+_MAX_CELL = float(1 << 19)
+"""Cells are counted from the middle of the scene; whatever lies further out shares the outermost cell."""
+
+
+def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indices, Indices]:
+    """Return all pairs nearer than a cutoff, sorted by (first, second).
+
+    Args:
+        left: positions [length], (3, n_left).
+        right: positions [length], (3, n_right), or None for pairs inside `left` with first < second.
+        cutoff: distance below which a pair is near [length].
+
+    Returns:
+        Indices into `left` and into `right` (or again `left`).
+    """
+    n_left = left.shape[1]
+    n_right = n_left if right is None else right.shape[1]
+    found = list(_by_tiles(left, right, cutoff) if n_left * n_right <= DENSE_LIMIT else _by_cells(left, right, cutoff))
+    if not found:
+        empty = np.empty(0, dtype=np.int64)
+        return empty, empty
+    key = found[0] if len(found) == 1 else np.concatenate(found)
+    key.sort()
+    first = key // n_right
+    return first, key - first * n_right
+
+
+def squared_distance(left: Floats, right: Floats) -> Floats:
+    """Return (dx·dx + dy·dy) + dz·dz of positions (3, …) that broadcast against each other."""
+    difference = right - left
+    difference *= difference
+    total: Floats = difference[0] + difference[1]
+    total += difference[2]
+    return total
+
+
+def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Indices]:
+    """Look at all pairs, a band of rows at a time; yields the keys first · n_right + second."""
+    partner = left if right is None else right
+    n_right = partner.shape[1]
+    rows = max(1, TILE // max(1, n_right))
+    for start in range(0, left.shape[1], rows):
+        band = left[:, start : start + rows, None]
+        origin = start if right is None else 0  # inside one set only partners from the band's first row on matter
+        first, second = np.nonzero(squared_distance(band, partner[:, None, origin:]) < cutoff * cutoff)
+        first += start
+        second += origin
+        if right is None:
+            ordered = first < second
+            first, second = first[ordered], second[ordered]
+        if first.size:
+            yield first * n_right + second
+
+
+def _by_cells(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Indices]:
+    """Look only at pairs in neighbouring cells of a grid; yields the keys first · n_right + second.
+
+    Atoms are sorted by cell, z fastest, so the three cells (z − 1, z, z + 1) of a column are one run of atoms:
+    each atom has nine runs to look at, or, inside one set, four runs and the rest of its own column.
+    """
+    partner = left if right is None else right
+    n_right = partner.shape[1]
+    middle = np.median(partner, axis=1)
+    key_right = _cell_key(partner, middle, cutoff)
+    order = np.argsort(key_right, kind="stable")
+    sorted_key = key_right[order]
+    key_left = sorted_key if right is None else _cell_key(left, middle, cutoff)
+    atom_left = order if right is None else np.arange(left.shape[1])
+    place = np.arange(atom_left.size)
+    columns = [(0, 0), (0, 1), (1, -1), (1, 0), (1, 1)] if right is None else _ALL_COLUMNS
+    for column in columns:
+        shift = (column[0] << 42) + (column[1] << 21)
+        start = np.searchsorted(sorted_key, key_left + (shift - 1), side="left")
+        stop = np.searchsorted(sorted_key, key_left + (shift + 1), side="right")
+        if right is None and column == (0, 0):
+            start = place + 1
+        for band in _bands(stop - start):
+            count = stop[band] - start[band]
+            first = np.repeat(atom_left[band], count)
+            second = order[_ragged_ranges(start[band], count)]
+            near = squared_distance(left[:, first], partner[:, second]) < cutoff * cutoff
+            first, second = first[near], second[near]
+            if right is None:
+                first, second = np.minimum(first, second), np.maximum(first, second)
+            if first.size:
+                yield first * n_right + second
+
+
+_ALL_COLUMNS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
+
+
+def _cell_key(position: Floats, middle: Floats, cutoff: float) -> Indices:
+    """Number the cells: x, y, z in 21 bits each; cells are a little wider than the cutoff, against rounding."""
+    cell = (position - middle[:, None]) / (cutoff * 1.000001)
+    np.floor(cell, out=cell)
+    np.clip(cell, -_MAX_CELL, _MAX_CELL, out=cell)
+    x, y, z = (cell + (_MAX_CELL + 1)).astype(np.int64)
+    key: Indices = (x << 42) + (y << 21) + z
+    return key
+
+
+def _bands(count: Indices) -> Iterator[slice]:
+    """Cut atoms into runs that together have about TILE pairs to look at."""
+    ends = np.cumsum(count)
+    start = 0
+    while start < ends.size:
+        done = ends[start - 1] if start else 0
+        stop = max(start + 1, int(np.searchsorted(ends, done + TILE, side="right")))
+        yield slice(start, stop)
+        start = stop
+
+
+def _ragged_ranges(start: Indices, count: Indices) -> Indices:
+    """Concatenate the ranges start[i] … start[i] + count[i] − 1."""
+    before = np.cumsum(count) - count
+    ranges: Indices = np.arange(int(count.sum())) + np.repeat(start - before, count)
+    return ranges

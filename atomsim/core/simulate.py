@@ -1,0 +1,95 @@
+"""From a model and a state to frames; knows backends only by what they must do, and no files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Protocol
+
+import numpy as np
+
+from atomsim.core.digest import state_digest
+from atomsim.core.model import Frame, Model, State
+from atomsim.core.observables import Observer
+from atomsim.core.stepper import NumpyStepper
+from atomsim.errors import BlowUpError
+
+
+class Stepper(Protocol):
+    """What a backend does: it advances one state of one model, always to the same bits."""
+
+    def advance(self, n_rounds: int) -> None:
+        """Compute so many iteration rounds."""
+
+    def state(self) -> State:
+        """Return a copy of the present state."""
+
+
+MakeStepper = Callable[[Model, State], Stepper]
+
+
+def simulate(
+    model: Model,
+    state: State,
+    rounds: int,
+    record_every: int = 10,
+    make_stepper: MakeStepper = NumpyStepper,
+) -> Iterator[Frame]:
+    """Yield the frames of a run: its first state, every `record_every` rounds, and its last round.
+
+    Args:
+        model: the compiled scene.
+        state: where to begin; it is the first frame.
+        rounds: the round to run to.
+        record_every: rounds between two frames; frames fall on its multiples.
+        make_stepper: the backend.
+
+    Yields:
+        Frames in order of rounds.
+
+    Raises:
+        BlowUpError: the numbers left the finite; all frames before have been yielded.
+    """
+    observer = Observer(model)
+    stepper = make_stepper(model, state)
+    while True:
+        yield frame_of(model, state, observer)
+        if state.round_index >= rounds:
+            return
+        next_round = min(rounds, (state.round_index // record_every + 1) * record_every)
+        stepper.advance(next_round - state.round_index)
+        before, state = state, stepper.state()
+        if not is_finite(state):
+            raise _blow_up(model, before, make_stepper)
+
+
+def frame_of(model: Model, state: State, observer: Observer) -> Frame:
+    """Measure a state and name it by its digest."""
+    return Frame(
+        round_index=state.round_index,
+        time=state.round_index * model.time_step,
+        position=state.position,
+        velocity=state.velocity,
+        digest=state_digest(state.position, state.velocity),
+        observables=observer.observe(state),
+    )
+
+
+def is_finite(state: State) -> bool:
+    """Return whether every number of a state is finite; once lost, this never comes back."""
+    return bool(np.isfinite(state.position).all() and np.isfinite(state.velocity).all())
+
+
+def _blow_up(model: Model, before: State, make_stepper: MakeStepper) -> BlowUpError:
+    """Go through the rounds since the last good frame again, one by one, to find where the numbers left the finite."""
+    stepper = make_stepper(model, before)
+    state = before
+    while is_finite(state):
+        stepper.advance(1)
+        state = stepper.state()
+    is_lost = ~(np.isfinite(state.position) & np.isfinite(state.velocity)).all(axis=1)
+    atom = int(np.flatnonzero(is_lost)[0])
+    group = model.group_of(atom)
+    return BlowUpError(
+        f"the simulation blew up at round {state.round_index}: atom {atom - group.start} of {group.origin} "
+        f"left the finite numbers; a smaller time_step than {model.time_step:g} is the usual remedy"
+    )
