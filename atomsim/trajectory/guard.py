@@ -1,0 +1,84 @@
+"""What every reader of a stranger's file keeps to; knows no file format and imports nothing heavy.
+
+A file that was damaged, or made to do damage, ends in one line that says what is wrong with it: never in a traceback,
+never in a request for more memory than there is.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from atomsim.errors import AtomsimError, InputError
+
+
+class DamageError(Exception):
+    """A file is not what it should be; the message completes the sentence that begins with its name."""
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turn whatever goes wrong while `path` is read into one line about it.
+
+    HDF5 answers damaged files with nearly every exception that Python has, so all of them are caught here.
+
+    Raises:
+        InputError: the file cannot be read; the message is `path: what is wrong`.
+    """
+    try:
+        yield
+    except AtomsimError:
+        raise
+    except DamageError as error:
+        raise InputError(f"{path}: {error}") from error
+    except MemoryError as error:
+        raise InputError(f"{path}: needs more memory than there is") from error
+    except Exception as error:
+        raise InputError(f"{path}: {_in_words(error)}") from error
+
+
+def _in_words(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror and not error.strerror.startswith("Unable to"):
+        return error.strerror
+    if "truncated file" in str(error):
+        return "damaged: the end of the file is missing"
+    detail = " ".join(str(error).split())[:200]
+    return f"damaged, or not a trajectory of atomsim ({detail or type(error).__name__})"
+
+
+def first_bytes(path: Path, count: int) -> bytes:
+    """Return the first bytes of a regular file, by which its format is known.
+
+    Opening a pipe would wait for a writer that may never come, so what is not a regular file is refused unopened.
+    """
+    mode = path.stat().st_mode
+    if stat.S_ISDIR(mode):
+        raise DamageError("this is a folder, not a trajectory")
+    if not stat.S_ISREG(mode):
+        raise DamageError("this is not a regular file")
+    with path.open("rb") as file:
+        return file.read(count)
+
+
+def check_room(n_bytes: int) -> None:
+    """Refuse to read more than the free memory holds.
+
+    Raises:
+        MemoryError: it does not fit.
+    """
+    if n_bytes > _free_memory():
+        raise MemoryError
+
+
+def _free_memory() -> int:
+    """Return the memory that can be had without swapping [bytes]; all of it where the system does not tell."""
+    try:
+        for line in Path("/proc/meminfo").read_text().splitlines():
+            if line.startswith("MemAvailable:"):
+                return int(line.split()[1]) * 1024
+    except OSError:
+        pass
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")

@@ -1,0 +1,24 @@
+"""How the datasets of the finished file are cut into chunks and filtered; shared by writing and reading it."""
+
+from __future__ import annotations
+
+UNITS = {"time": "ps", "position": "Angstrom", "velocity": "Angstrom ps-1"}
+"""Labels that readers of H5MD demand."""
+
+UNIT_NOTE = (
+    "placeholder labels of reduced units: a length of 1 is the radius of an atom, velocities are per unit of time"
+)
+
+NUMBERS = {"whole": "<i8", "wholes": "<i8", "real": "<f8", "flag": "?"}
+"""Types of the plain values of the header that are not texts."""
+
+PARAMETERS = "parameters/atomsim"
+PARTICLES = "particles/trajectory"
+
+_CHUNK_BYTES = 1 << 20
+_MOST_CHUNK_ROWS = 64
+
+
+def chunk_rows(n_frames: int, n_atoms: int) -> int:
+    """Return how many frames share a chunk: about 1 MiB, at most 64, at least one, and never more than there are."""
+    return min(n_frames, max(1, min(_CHUNK_BYTES // (24 * n_atoms), _MOST_CHUNK_ROWS)))

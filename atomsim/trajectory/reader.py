@@ -1,0 +1,168 @@
+"""A trajectory as an ordinary Python sequence of frames, finished or not; knows nothing of how one is written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol, overload
+
+import numpy as np
+
+from atomsim.core.model import Floats, Frame, Indices
+from atomsim.errors import InputError
+from atomsim.trajectory.guard import DamageError, first_bytes, reading
+from atomsim.trajectory.header import End, Header
+from atomsim.trajectory.journal import Journal
+from atomsim.trajectory.records import HEAD, journal_path
+from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
+
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+class _Source(Protocol):
+    header: Header
+    series: Series
+    end: End
+
+    def state(self, index: int) -> tuple[Floats, Floats]: ...
+
+    def close(self) -> None: ...
+
+
+class Frames(Sequence[Frame]):
+    """Some frames of a trajectory, each read when it is asked for; a slice of them is such a sequence again."""
+
+    def __init__(self, trajectory: Trajectory, indices: range) -> None:
+        self._trajectory = trajectory
+        self._indices = indices
+
+    def __len__(self) -> int:
+        return len(self._indices)
+
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Frames: ...
+
+    def __getitem__(self, index: int | slice) -> Frame | Frames:
+        if isinstance(index, slice):
+            return Frames(self._trajectory, self._indices[index])
+        return self._trajectory[self._indices[index]]
+
+
+class Trajectory(Sequence[Frame]):
+    """The frames of a run, read one by one from `out.h5`, or from its journal if there is nothing else.
+
+    A context manager. Every frame is checked against its digest when it is read.
+
+    Args:
+        path: the trajectory as the user named it.
+
+    Raises:
+        InputError: it is missing, damaged or not a trajectory.
+
+    Attributes:
+        path: as the user named it.
+        header: scene, groups, bonds: all that stays constant.
+        end: how the run ended; `killed` for a journal that was not ended.
+        from_journal: whether the frames come from the journal, because the run is not finished, or was killed.
+        has_journal: whether there is a journal; next to a finished file, it belongs to a newer run, or to this one
+            going on.
+        lost_bytes: how much at the end of a journal is torn or damaged, and left out.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        journal = journal_path(self.path)
+        self.has_journal = journal.exists()
+        found = journal if self.has_journal and not self.path.exists() else self.path
+        with reading(self.path):
+            if not found.exists():
+                raise InputError(f"{self.path}: no such file")
+            self._source: _Source = self._opened(found)
+        self.header = self._source.header
+        self.end = self._source.end
+
+    def _opened(self, found: Path) -> _Source:
+        signature = first_bytes(found, 8)
+        self.from_journal = signature == HEAD
+        self.lost_bytes = 0
+        if self.from_journal:
+            journal = Journal(os.open(found, os.O_RDONLY | os.O_CLOEXEC))
+            self.lost_bytes = journal.lost
+            return journal
+        if signature != _HDF5_SIGNATURE:
+            raise DamageError("not a trajectory of atomsim")
+        # Deferred because HDF5 takes longer to import than a small scene to run.
+        from atomsim.trajectory.finished import Finished
+
+        return Finished(found)
+
+    def __enter__(self) -> Trajectory:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file; what was read stays."""
+        self._source.close()
+
+    def __len__(self) -> int:
+        return len(self._source.series)
+
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Frames: ...
+
+    def __getitem__(self, index: int | slice) -> Frame | Frames:
+        indices = range(len(self))[index]
+        return Frames(self, indices) if isinstance(indices, range) else self._frame(indices)
+
+    def __iter__(self) -> Iterator[Frame]:
+        return (self._frame(index) for index in range(len(self)))
+
+    @property
+    def rounds(self) -> Indices:
+        """The round of each frame, (n_frames,) int64."""
+        return self._source.series["round"].astype(np.int64)
+
+    @property
+    def time(self) -> Floats:
+        """The time of each frame, round · τ, (n_frames,) float64."""
+        times: Floats = self.rounds * np.float64(self.header.time_step)
+        return times
+
+    @property
+    def digests(self) -> list[str]:
+        """The state digest of each frame."""
+        return [digest.decode() for digest in self._source.series["digest"].tolist()]
+
+    @cached_property
+    def observables(self) -> Mapping[str, Any]:
+        """By name as in `Observables`, what was measured of each frame, (n_frames,) or (n_frames, 3)."""
+        return {name: np.ascontiguousarray(self._source.series[name]) for name in OBSERVABLES}
+
+    def verify(self) -> None:
+        """Read every frame and check it against its digest.
+
+        Raises:
+            InputError: a frame is damaged; the message names its round.
+        """
+        for _ in self:
+            pass
+
+    def _frame(self, index: int) -> Frame:
+        with reading(self.path):
+            position, velocity = self._source.state(index)
+            frame = frame_of(self._source.series[index], position, velocity, self.header.time_step)
+            is_finite = np.isfinite(position).all() and np.isfinite(velocity).all()
+            if not is_finite and self.end.kind != "blew up":
+                raise DamageError(f"damaged: the state at round {frame.round_index} is not finite")
+            return frame

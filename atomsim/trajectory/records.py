@@ -1,0 +1,38 @@
+"""The form of the journal, the append-only file from which nothing can take away what is already in it.
+
+A journal is a series of records: a prefix (kind, length and CRC-32) and that many bytes.
+
+    head     the header as JSON; the first record
+    bonds    (n_bonds, 3) int32: first, second, table; the second record
+    frames   rows of frames
+    end      the end of the run as JSON
+    go on    the run goes on after a stop: JSON with the rounds now planned. It takes back the end, and the last
+             frame if the run as now planned would not have recorded that round.
+
+So resuming only appends too, and a reader stops before the first record that is torn or damaged. This file knows the
+form, not how a journal is written, read or built into the finished file.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from pathlib import Path
+
+from atomsim.trajectory.disk import beside
+
+HEAD, BONDS, FRAMES, END, GO_ON = b"atom.hea", b"atom.bon", b"atom.fra", b"atom.end", b"atom.goo"
+"""The kinds of record; the first also tells that a file is a journal."""
+
+PREFIX = struct.Struct("<8sQI")
+"""Kind, length of the payload in bytes, CRC-32 of both and of the payload."""
+
+
+def journal_path(path: Path) -> Path:
+    """Return where the journal of a trajectory lives: next to it."""
+    return beside(path, ".part")
+
+
+def checksum_start(kind: bytes, length: int) -> int:
+    """Return the CRC-32 of a record's kind and length; the payload continues it."""
+    return zlib.crc32(struct.pack("<8sQ", kind, length))
