@@ -29,14 +29,17 @@ class BlowUpError(AtomsimError):
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A place in a text that a person wrote: file as they named it, line and column counted from 1."""
+    """A place in a text that a person wrote: file as they named it, line and column counted from 1.
+
+    Line 0 means the whole of it: a file that cannot be read, a setting on the command line.
+    """
 
     file: str
     line: int
     column: int
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}:{self.column}"
+        return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
 
 
 @dataclass(frozen=True, slots=True)

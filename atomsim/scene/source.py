@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from atomsim.errors import Mark, Problem
+from atomsim.scene.wording import readable
 
 Path = tuple[str | int, ...]
 """The keys and list indices that lead to a value: `("bonds", "right", "rule")`."""
@@ -13,7 +14,7 @@ Path = tuple[str | int, ...]
 
 def dotted(path: Path) -> str:
     """Write a path the way users do: `forces.weight.impulse.2`."""
-    return ".".join(str(part) for part in path)
+    return ".".join(readable(str(part)) for part in path)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.css_colors import CSS_COLORS
@@ -17,6 +17,14 @@ class Declaration(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, defer_build=True)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _null_is_absent(cls, value: Any) -> Any:
+        """A key that is known and null counts as not written: that is how a scene deletes what it extends."""
+        if not isinstance(value, dict):
+            return value
+        return {key: inner for key, inner in value.items() if inner is not None or key not in cls.model_fields}
+
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 """A finite number."""
@@ -27,10 +35,13 @@ Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
 NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
 """A finite number, zero or more."""
 
-Count = Annotated[int, Field(ge=1)]
+LARGEST_WHOLE_NUMBER = 10**15
+"""More than any scene needs, and exact in every number type that meets it (int64, float64, JSON)."""
+
+Count = Annotated[int, Field(ge=1, le=LARGEST_WHOLE_NUMBER)]
 """A whole number, one or more."""
 
-Round = Annotated[int, Field(ge=0)]
+Round = Annotated[int, Field(ge=0, le=LARGEST_WHOLE_NUMBER)]
 """An iteration round: a whole number, zero or more."""
 
 Vector = Annotated[tuple[Number, Number, Number], Field(strict=False)]
@@ -85,6 +96,16 @@ Name = Annotated[str, AfterValidator(_check_name), WithJsonSchema({"type": "stri
 """A name that a person gives: letters, digits, `_` and `-`."""
 
 
+def _drop_nulls(value: Any) -> Any:
+    return {key: inner for key, inner in value.items() if inner is not None} if isinstance(value, dict) else value
+
+
+Declared = TypeVar("Declared")
+
+Named = Annotated[dict[Name, Declared], BeforeValidator(_drop_nulls)]
+"""Declarations by name, in order; null counts as not declared."""
+
+
 def _check_color(value: str) -> str:
     if value.lower() not in CSS_COLORS and not re.fullmatch(r"#(?:[0-9a-fA-F]{3}){1,2}", value):
         raise PydanticCustomError("color", "a color is a CSS name (steelblue) or #rgb or #rrggbb")
@@ -95,23 +116,32 @@ Color = Annotated[str, AfterValidator(_check_color)]
 """A CSS colour name such as `steelblue`, or `#rgb`, or `#rrggbb`."""
 
 
-def _check_selection(value: Any) -> Any:
-    items = (value,) if isinstance(value, str) else value
-    if not isinstance(items, (tuple, list)) or not items or not all(isinstance(item, str) for item in items):
+def _as_list(value: Any) -> Any:
+    if isinstance(value, str):
+        return (value,)
+    if not isinstance(value, (list, tuple)) or not value:
         raise PydanticCustomError("selection", "a selection is a group name such as `ring`, `ring[0:10]`, or a list")
-    for item in items:
-        try:
-            parse_selection(item)
-        except SelectionSyntaxError as error:
-            raise PydanticCustomError("selection", "{why}", {"why": str(error)}) from None
-    return tuple(items)
+    return value
+
+
+def _check_selection(value: str) -> str:
+    try:
+        parse_selection(value)
+    except SelectionSyntaxError as error:
+        raise PydanticCustomError("selection_syntax", "{why}", {"why": str(error)}) from None
+    return value
 
 
 _SELECTION_SCHEMA = {
     "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}],
 }
 
-Selection = Annotated[tuple[str, ...], BeforeValidator(_check_selection), WithJsonSchema(_SELECTION_SCHEMA)]
+Selection = Annotated[
+    tuple[Annotated[str, AfterValidator(_check_selection)], ...],
+    Field(strict=False),
+    BeforeValidator(_as_list),
+    WithJsonSchema(_SELECTION_SCHEMA),
+]
 """An expression that names atoms: `ring`, `ring[0:10]`, `floor[0, :]`, `all`, or a list of these (their union)."""
 
 Pair = Annotated[tuple[Selection, Selection], Field(strict=False)]

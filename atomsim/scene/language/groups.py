@@ -33,7 +33,7 @@ class Spin(Declaration):
     axis: Axis
     """Direction to spin about: x, y, z or [x, y, z] (right-handed)."""
     rate: Number
-    """Angular velocity [radians per unit of time]; each atom starts with rate · axis × (its offset), besides `velocity`."""
+    """Angular velocity [radians per unit of time]: each atom starts with rate · axis × (its offset) plus `velocity`."""
 
 
 def _as_tuple(value: object) -> object:
@@ -90,7 +90,7 @@ class RingGroup(GroupBase):
     radius: Positive
     """Radius of the circle through the centres [length]."""
     axis: AxisLetter = "z"
-    """The axis through the ring; its plane is x–y for z, x–z for y, y–z for x, angles counted from the first of the two."""
+    """The axis through the ring; its plane is x–y for z, x–z for y, y–z for x, angles from the first of the two."""
 
 
 class PolygonGroup(GroupBase):
@@ -121,7 +121,7 @@ class BlockGroup(GroupBase):
     """Atoms on a cubic grid: solids and fluids."""
 
     shape: Literal["block"]
-    """A cubic grid of nx · ny · nz atoms; the atom at (x, y, z) has the index (nz-index · ny + y) · nx + x, x fastest."""
+    """A cubic grid of nx · ny · nz atoms; the atom at (x, y, z) has the index (z · ny + y) · nx + x, x fastest."""
     counts: Annotated[tuple[Count, Count, Count], Field(strict=False)]
     """Numbers of atoms [nx, ny, nz]."""
     spacing: Positive

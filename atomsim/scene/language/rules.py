@@ -15,8 +15,9 @@ def _require_one(declaration: Declaration, *keys: str) -> None:
     given = [key for key in keys if getattr(declaration, key) is not None]
     if len(given) != 1:
         names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
-        found = " and ".join(f"`{key}`" for key in given) if given else "none of them"
-        raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", {"names": names, "found": found})
+        found = " and ".join(f"`{key}`" for key in given) if given else "none"
+        context = {"names": names, "found": found}
+        raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)
 
 
 class BondBase(Declaration):
@@ -76,9 +77,7 @@ class ListedBonds(BondBetweenBase):
 
     rule: Literal["pairs"]
     """The pairs listed under `pairs`."""
-    pairs: Annotated[
-        tuple[Annotated[tuple[Round, Round], Field(strict=False)], ...], Field(strict=False, min_length=1)
-    ]
+    pairs: Annotated[tuple[Annotated[tuple[Round, Round], Field(strict=False)], ...], Field(strict=False, min_length=1)]
     """[[i, k], …]: indices into `within`, or the first into A and the second into B of `between: [A, B]`."""
 
 

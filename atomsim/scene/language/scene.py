@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import (
     AxisLetter,
     Color,
     Count,
     Declaration,
-    Name,
+    Named,
     NotNegative,
     Number,
     Positive,
@@ -52,18 +53,26 @@ class Render(Declaration):
 
     rounds: Annotated[tuple[Round, ...], Field(strict=False, min_length=1)] | None = None
     """The rounds that make the strip; by default six evenly spread ones."""
-    camera: Camera = Camera()
+    camera: Camera = Field(default_factory=Camera)
     """From where the scene is seen."""
-    colors: dict[Name, Color] = {}
+    colors: Named[Color] = Field(default_factory=dict)
     """Colours by group; they go before the group's own `color`."""
     background: Color = "#f5f5f7"
     """Colour behind the atoms."""
 
 
+def _check_version(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise PydanticCustomError("version", "the version of the scene language is 1")
+    if value > 1:
+        raise PydanticCustomError("version", "this scene needs a newer atomsim; this one reads version 1")
+    return value
+
+
 class Scene(Declaration):
     """A scene: groups of atoms, what binds them, what may collide, what acts from outside."""
 
-    atomsim: Literal[1]
+    atomsim: Annotated[Literal[1], BeforeValidator(_check_version)]
     """Version of the scene language."""
     title: str = ""
     """One line that says what the scene shows."""
@@ -77,13 +86,13 @@ class Scene(Declaration):
     """A frame is written at round 0, every so many rounds, and at the last round."""
     jitter: Jitter | None = None
     """A seeded disturbance of the initial positions."""
-    groups: Annotated[dict[Name, Group], Field(min_length=1)]
+    groups: Annotated[Named[Group], Field(min_length=1)]
     """What there is, by name; atoms are numbered in order of declaration."""
-    bonds: dict[Name, Bonds] = {}
+    bonds: Named[Bonds] = Field(default_factory=dict)
     """What holds together, by name; one force table each."""
-    collisions: dict[Name, Collisions] = {}
+    collisions: Named[Collisions] = Field(default_factory=dict)
     """What may touch, by name; one force table each."""
-    forces: dict[Name, Force] = {}
+    forces: Named[Force] = Field(default_factory=dict)
     """What acts from outside, by name, applied in order of declaration."""
-    render: Render = Render()
+    render: Render = Field(default_factory=Render)
     """How `atomsim render` shows the trajectory."""

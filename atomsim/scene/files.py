@@ -1,0 +1,151 @@
+"""Scene files and the files they extend, read into one tree; knows `extends` and no other word of the language."""
+
+from __future__ import annotations
+
+import codecs
+import os
+import re
+from pathlib import Path
+
+from atomsim.errors import Mark, Problem, SceneError
+from atomsim.scene.strict_yaml import MAX_CHARACTERS, read_yaml
+from atomsim.scene.tree import Node, merge
+from atomsim.scene.wording import printable, shown, suggestion
+
+MAX_FILES = 16
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+
+
+def read_scene_file(name: str) -> Node:
+    """Read a scene file and lay it over the files it extends.
+
+    Args:
+        name: the file as the user named it.
+
+    Returns:
+        The merged tree, without `extends`.
+
+    Raises:
+        SceneError: a file that cannot be read or is no strict YAML mapping; an `extends` that leads outside the folder
+            of the first file, in a circle or through more than 16 files.
+    """
+    return _read_chain(name, os.path.realpath(Path(name).parent), [])
+
+
+def read_scene_text(text: str, name: str) -> Node:
+    """Read a scene that is no file, and so extends none.
+
+    Args:
+        text: the scene.
+        name: what to call it in messages.
+
+    Raises:
+        SceneError: no strict YAML mapping, or one that extends a file.
+    """
+    root = _mapping(text, name)
+    if "extends" in _entries(root):
+        mark = _entries(root)["extends"].mark
+        raise SceneError([Problem(mark, "extends", "only a scene file can extend another")])
+    return root
+
+
+def _read_chain(name: str, folder: str, chain: list[str]) -> Node:
+    """Read a file and what it extends; `chain` names the files that led here."""
+    root = _mapping(_read_text(name), name)
+    entries = dict(_entries(root))
+    extends = entries.pop("extends", None)
+    root = Node(dict(entries), root.mark)
+    if extends is None or extends.value is None:
+        return root
+    chain = [*chain, name]
+    base = _base_name(extends, folder, chain)
+    return merge(_read_chain(base, folder, chain), root)
+
+
+def _base_name(extends: Node, folder: str, chain: list[str]) -> str:
+    """Return the name of the extended file, having made sure that it may be read."""
+
+    def refused(message: str) -> SceneError:
+        return SceneError([Problem(extends.mark, "extends", message)])
+
+    if not isinstance(extends.value, str):
+        raise refused(f"needs the path of a scene file (got {shown(extends.value)})")
+    if not extends.value or Path(extends.value).is_absolute():
+        raise refused(f"needs a path relative to this file (got {shown(extends.value)})")
+    base = os.path.normpath(Path(chain[-1]).parent / extends.value)
+    target = Path(os.path.realpath(base))
+    if not target.is_relative_to(folder):
+        raise refused(f"leads outside the folder of {printable(chain[0])} (got {shown(extends.value)})")
+    if str(target) in [os.path.realpath(name) for name in chain]:
+        raise refused(f"goes round in a circle: {' → '.join(printable(name) for name in [*chain, base])}")
+    if len(chain) == MAX_FILES:
+        raise refused(f"goes through more than {MAX_FILES} files")
+    if not target.exists():
+        raise refused(_no_such_file(base))
+    return base
+
+
+def _mapping(text: str, name: str) -> Node:
+    file = printable(name)
+    root = read_yaml(text, lambda line, column: Mark(file, line, column))
+    if root.value is None:
+        raise SceneError([Problem(root.mark, "", "the scene is empty; it begins with `atomsim: 1`")])
+    if not isinstance(root.value, dict):
+        message = f"a scene is a mapping of keys such as `groups:` (got {shown(root.plain())})"
+        raise SceneError([Problem(root.mark, "", message)])
+    return root
+
+
+def _entries(root: Node) -> dict[str, Node]:
+    assert isinstance(root.value, dict)  # by `_mapping`
+    return root.value
+
+
+def _read_text(name: str) -> str:
+    """Read a file as UTF-8, never more of it than a scene may have."""
+    try:
+        with Path(name).open("rb") as file:
+            data = file.read(MAX_CHARACTERS + 1)
+    except (OSError, ValueError) as error:
+        raise _unreadable(name, _reason(error, name)) from None
+    if data.startswith(_HDF5):
+        raise _unreadable(name, "this is a trajectory; `atomsim show --scene` writes out its scene")
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise _unreadable(name, "the file is UTF-16; save it as UTF-8")
+    if len(data) > MAX_CHARACTERS:
+        raise _unreadable(name, "the file is larger than 16 MiB")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        lines = re.split(b"\r\n|\r|\n", error.object[: error.start])
+        mark = Mark(printable(name), len(lines), len(lines[-1].decode("utf-8", "replace")) + 1)
+        message = f"the byte 0x{error.object[error.start]:02x} is not UTF-8; save the file as UTF-8"
+        raise SceneError([Problem(mark, "", message)]) from None
+
+
+def _reason(error: OSError | ValueError, name: str) -> str:
+    """Say why a file cannot be opened."""
+    if isinstance(error, IsADirectoryError):
+        return "this is a folder, not a scene file"
+    if isinstance(error, PermissionError):
+        return "the file may not be read (permission denied)"
+    if isinstance(error, (FileNotFoundError, ValueError)):
+        return _no_such_file(name)
+    return f"the file cannot be read ({error.strerror})"
+
+
+def _no_such_file(name: str) -> str:
+    """Say that there is no such file, and which one may have been meant."""
+    path = Path(name)
+    try:
+        neighbours = [entry.name for entry in path.parent.iterdir() if entry.suffix in (".yaml", ".yml")]
+    except (OSError, ValueError):
+        neighbours = []
+    close = suggestion(path.name, neighbours)
+    remedy = f"; did you mean `{printable(str(path.parent / close))}`?" if close is not None else ""
+    return f"there is no such file{remedy}"
+
+
+def _unreadable(name: str, message: str) -> SceneError:
+    return SceneError([Problem(Mark(printable(name), 0, 0), "", message)])

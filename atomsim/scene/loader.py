@@ -1,0 +1,104 @@
+"""Scene files to validated scenes with the place of every value; knows no atoms (the compiler makes them)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+
+from atomsim.errors import Problem, SceneError
+from atomsim.scene.files import read_scene_file, read_scene_text
+from atomsim.scene.language import Scene
+from atomsim.scene.overrides import override
+from atomsim.scene.references import check_references
+from atomsim.scene.source import Source
+from atomsim.scene.tree import Node, Places, without_nulls
+from atomsim.scene.wording import printable
+from atomsim.scene.written import to_yaml
+
+MAX_PROBLEMS = 100
+"""Further mistakes are counted, not listed."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedScene:
+    """A valid scene and where it came from."""
+
+    scene: Scene
+    source: Source
+
+
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> LoadedScene:
+    """Load a scene file.
+
+    Args:
+        path: the file; what it `extends` is looked up beside it.
+        overrides: settings `PATH=VALUE`, applied in order after `extends`.
+
+    Returns:
+        The scene, and its source with the resolved text.
+
+    Raises:
+        SceneError: everything that is wrong with the scene, in the order of the file.
+    """
+    name = os.fspath(path)
+    return _loaded(read_scene_file(name), name, overrides)
+
+
+def loads(text: str, name: str = "<scene>", overrides: Iterable[str] = ()) -> LoadedScene:
+    """Load a scene from a text, such as the one inside a trajectory; it extends no file.
+
+    Args:
+        text: the scene as YAML.
+        name: what to call it in messages.
+        overrides: settings `PATH=VALUE`, applied in order.
+
+    Returns:
+        The scene, and its source with the resolved text.
+
+    Raises:
+        SceneError: everything that is wrong with the scene, in the order of the text.
+    """
+    return _loaded(read_scene_text(text, name), name, overrides)
+
+
+def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
+    """Validate a merged tree."""
+    overrides = tuple(overrides)
+    root = override(root, overrides)
+    data = root.plain()
+    source = Source(name=name, overrides=overrides, marks=Places(root))
+    problems = check_references(data, source)
+    scene = _validated(data, source, problems)
+    if problems or scene is None:
+        raise SceneError(_in_order(problems, source))
+    text = to_yaml(without_nulls(data))
+    return LoadedScene(scene, Source(name, text, overrides, source.marks))
+
+
+def _validated(data: dict[str, Any], source: Source, problems: list[Problem]) -> Scene | None:
+    """Make a scene of plain data, or add to the problems what is wrong with them."""
+    try:
+        return Scene.model_validate(data)
+    except ValidationError as error:
+        from atomsim.scene.complaints import complaints  # only a mistake needs it
+
+        problems += complaints(error, data, source)
+        return None
+
+
+def _in_order(problems: list[Problem], source: Source) -> list[Problem]:
+    """Sort problems by place, those of the file itself before those of the files it extends."""
+
+    def place(problem: Problem) -> tuple[bool, str, int, int]:
+        mark = problem.mark
+        return mark.file != printable(source.name), mark.file, mark.line, mark.column
+
+    ordered = sorted(problems, key=place)
+    more = len(ordered) - MAX_PROBLEMS
+    if more <= 0:
+        return ordered
+    return [*ordered[:MAX_PROBLEMS], source.problem((), f"and {more} more mistakes")]

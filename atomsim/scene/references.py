@@ -1,0 +1,74 @@
+"""Names and rounds that a scene mentions but does not have; needs no atoms, so it is told before compiling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from atomsim.errors import Problem
+from atomsim.scene.overrides import is_setting
+from atomsim.scene.selection import SelectionSyntaxError, parse_selection
+from atomsim.scene.source import Path, Source
+from atomsim.scene.wording import meant, readable
+
+_SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
+
+
+def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
+    """Find names that are no groups, and rounds to show that are never run.
+
+    Args:
+        data: the plain data of a scene; what is malformed in them is passed over, for validation reports it.
+        source: the places of the values.
+    """
+    return [*_unknown_groups(data, source), *_rounds_never_run(data, source)]
+
+
+def _unknown_groups(data: dict[str, Any], source: Source) -> Iterator[Problem]:
+    groups = list(_mapping(data.get("groups")))
+    if not groups:
+        return
+    for path, name in [*_selected(data), *_colored(data)]:
+        if name not in groups and name != "all":
+            yield source.problem(path, f"there is no group `{readable(name)}`; {meant(name, groups, 'the groups are')}")
+
+
+def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
+    """Every group that a selection names."""
+    for section in ("bonds", "collisions", "forces"):
+        for name, declaration in _mapping(data.get(section)).items():
+            for key in _SELECTION_KEYS:
+                for path, text in _texts(_mapping(declaration).get(key), (section, name, key)):
+                    try:
+                        yield path, parse_selection(text).group
+                    except SelectionSyntaxError:
+                        continue
+
+
+def _colored(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
+    for name in _mapping(_mapping(data.get("render")).get("colors")):
+        yield ("render", "colors", name), name
+
+
+def _rounds_never_run(data: dict[str, Any], source: Source) -> Iterator[Problem]:
+    """Rounds to show beyond the last; a run cut short on the command line shows what there is."""
+    last = data.get("rounds")
+    shown = _mapping(data.get("render")).get("rounds")
+    if type(last) is not int or not isinstance(shown, list) or is_setting(source.mark(("rounds",))):
+        return
+    for index, round_index in enumerate(shown):
+        if type(round_index) is int and round_index > last:
+            yield source.problem(("render", "rounds", index), f"round {round_index} is never run; the last is {last}")
+
+
+def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:
+    """Every text in a text or in nested lists of texts."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, list):
+        for index, inner in enumerate(value):
+            yield from _texts(inner, (*path, index))
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}

@@ -1,0 +1,89 @@
+"""How values and words of a user appear in messages: short, on one line, printable; knows no scene."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+_LONGEST = 60
+
+
+def printable(text: str) -> str:
+    r"""Return a text as one line that no terminal takes for a command: unprintable characters are escaped.
+
+    >>> printable("two\nlines")
+    'two\\nlines'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def readable(text: str) -> str:
+    """Return a text fit for a message: printable, and cut off when it is long."""
+    escaped = printable(text[: _LONGEST + 1])
+    return escaped if len(escaped) <= _LONGEST else escaped[: _LONGEST - 1] + "…"
+
+
+def shown(value: Any) -> str:
+    """Return a value as the user could have written it, shortened.
+
+    >>> shown({"axis": "x", "degrees": [1.5, None, True]})
+    '{axis: "x", degrees: [1.5, null, true]}'
+    """
+    return readable(_written(value))
+
+
+def suggestion(word: str, choices: Iterable[str]) -> str | None:
+    """Return the choice that was probably meant, if any comes close."""
+    import difflib  # only a mistake needs it
+
+    by_lower_case = {choice.lower(): choice for choice in choices}
+    close = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower_case, n=1, cutoff=0.6)
+    return by_lower_case[close[0]] if close else None
+
+
+def either(choices: Iterable[str]) -> str:
+    """List alternatives.
+
+    >>> either(["x", "y", "z"])
+    'x, y or z'
+    """
+    *most, last = choices
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+def meant(word: str, choices: Iterable[str], otherwise: str) -> str:
+    """Say which of the choices was probably meant, or else list them all.
+
+    >>> meant("rong", ["ring", "string"], "the shapes are")
+    'did you mean `ring`?'
+    >>> meant("sphere", ["ring", "block"], "the shapes are")
+    'the shapes are ring, block'
+    """
+    choices = list(choices)
+    close = suggestion(word, choices)
+    if close is not None:
+        return f"did you mean `{close}`?"
+    return f"{otherwise} {listed(choices)}"
+
+
+def listed(choices: list[str], most: int = 20) -> str:
+    """List names, and say how many more there are when there are many."""
+    more = f" and {len(choices) - most} more" if len(choices) > most else ""
+    return ", ".join(readable(choice) for choice in choices[:most]) + more
+
+
+def _written(value: Any) -> str:
+    """Write a value in YAML's flow style, as far as a message can use it."""
+    if isinstance(value, str):
+        return json.dumps(value[: _LONGEST + 1], ensure_ascii=False)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_written(inner)}" for key, inner in _first(value.items())) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_written(inner) for inner in _first(value)) + "]"
+    return json.dumps(value)
+
+
+def _first(values: Iterable[Any]) -> list[Any]:
+    """Return as many values as can possibly be seen."""
+    return [value for value, _ in zip(values, range(_LONGEST), strict=False)]
