@@ -110,7 +110,7 @@ def _missing(path: Path, data: Any) -> str:
 def _unknown_key(path: Path, data: Any, source: Source) -> str:
     key = str(path[-1])
     declaration = declaration_at(path[:-1], data)
-    keys = list(declaration.model_fields) if declaration is not None else []
+    keys = list(descriptions(declaration)) if declaration is not None else []
     message = f"unknown key `{readable(key)}`; "
     before_colon = key.partition(":")[0].strip()
     if ":" in key and before_colon in keys:
@@ -139,7 +139,7 @@ def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) ->
 def _no_mapping(path: Path, value: Any, data: Any) -> str:
     declaration = declaration_at(path, data)
     if declaration is not None:
-        keys = ", ".join(f"{key}: …" for key in declaration.model_fields)
+        keys = ", ".join(f"{key}: …" for key in descriptions(declaration))
         return f"needs keys: {{{keys}}} (got {shown(value)})"
     if len(path) == 1 or path == ("render", "colors"):
         return f"needs a mapping from names to declarations (got {shown(value)})"

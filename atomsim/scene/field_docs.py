@@ -15,15 +15,16 @@ from atomsim.scene.source import Path
 
 @functools.cache
 def descriptions(declaration: type[Declaration]) -> dict[str, str]:
-    """Return the string below each field of a declaration, inherited ones too, in the order of the fields.
+    """Return the string below each field of a declaration: its own fields first, then those it inherits.
 
     They are read from the source when somebody asks: pydantic would read them at every start.
     """
     found: dict[str, str] = {}
-    for ancestor in reversed(declaration.__mro__):
+    for ancestor in declaration.__mro__:
         if issubclass(ancestor, Declaration):
-            found |= _in_module(ancestor.__module__).get(ancestor.__name__, {})
-    return {field: found[field] for field in declaration.model_fields}
+            inherited = _in_module(ancestor.__module__).get(ancestor.__name__, {})
+            found |= {field: text for field, text in inherited.items() if field not in found}
+    return found
 
 
 @functools.cache

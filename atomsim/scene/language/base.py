@@ -44,7 +44,7 @@ Count = Annotated[int, Field(ge=1, le=LARGEST_WHOLE_NUMBER)]
 Round = Annotated[int, Field(ge=0, le=LARGEST_WHOLE_NUMBER)]
 """An iteration round: a whole number, zero or more."""
 
-Vector = Annotated[tuple[Number, Number, Number], Field(strict=False)]
+Vector = Annotated[tuple[Number, Number, Number], Field(strict=False, title="[x, y, z]")]
 """Three finite numbers: x, y, z."""
 
 
@@ -67,6 +67,7 @@ AxisLetter = Literal["x", "y", "z"]
 
 Axis = Annotated[
     Vector,
+    Field(title="x, y, z or [x, y, z]"),
     AfterValidator(_check_direction),
     BeforeValidator(_spell_out_axis),
     WithJsonSchema(
@@ -74,7 +75,7 @@ Axis = Annotated[
             "anyOf": [
                 {"enum": ["x", "y", "z"]},
                 {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
-            ]
+            ],
         }
     ),
 ]
@@ -112,7 +113,7 @@ def _check_color(value: str) -> str:
     return value
 
 
-Color = Annotated[str, AfterValidator(_check_color)]
+Color = Annotated[str, Field(title="color"), AfterValidator(_check_color)]
 """A CSS colour name such as `steelblue`, or `#rgb`, or `#rrggbb`."""
 
 
@@ -133,6 +134,7 @@ def _check_selection(value: str) -> str:
 
 
 _SELECTION_SCHEMA = {
+    "title": "selection",
     "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}],
 }
 

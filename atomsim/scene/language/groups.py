@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from atomsim.scene.language.base import (
     Axis,
@@ -40,18 +42,16 @@ def _as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, (list, tuple)) else (value,)
 
 
-Rotations = Annotated[
-    tuple[Rotation, ...],
-    BeforeValidator(_as_tuple),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"$ref": "#/$defs/Rotation"},
-                {"type": "array", "items": {"$ref": "#/$defs/Rotation"}},
-            ]
-        }
-    ),
-]
+class _OneOrList:
+    """Tells the JSON Schema of a list that one item alone will do."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        items = handler(core)
+        return {"anyOf": [items["items"], items]}
+
+
+Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(_as_tuple), _OneOrList()]
+"""A turn, or a list of turns."""
 
 
 class GroupBase(Declaration):
