@@ -1,0 +1,93 @@
+"""What a row of pictures shows: everything that matters, and not what has left."""
+
+import numpy as np
+import pytest
+
+from atomsim.render.camera import View, outline
+from atomsim.render.framing import MARGIN, fit, is_drawable
+
+SIZE = (400, 300)
+
+
+def grid_with_two_balls(height: float) -> np.ndarray:
+    column, row = np.meshgrid(np.arange(25.0) - 12, np.arange(25.0) - 12)
+    surface = np.stack([column.ravel(), row.ravel(), np.zeros(625)], axis=1)
+    return np.vstack([surface, [[6, 2, height], [8, -3, height]]])
+
+
+def reach(camera, atoms):
+    """How far the balls extend from the middle of the picture, in halves of its width and of its height."""
+    left, right, bottom, top = outline(camera.see(atoms), camera.convergence)
+    half = camera.width / 2
+    return max(right.max(), -left.min()) / half, max(top.max(), -bottom.min()) / (half * SIZE[1] / SIZE[0])
+
+
+@pytest.mark.parametrize("view", [View(), View(0, 0), View(77, 50, "x"), View(-140, -20, "y"), View(0, 90)])
+def test_whole_balls_fit_and_fill_the_picture(view):
+    rng = np.random.default_rng(3)
+    rounds = [rng.normal(size=(50, 3)) * [9, 4, 2] + [100, 0, k] for k in range(3)]
+    camera = fit(view, rounds, SIZE)
+    horizontal, vertical = reach(camera, np.concatenate(rounds))
+    assert max(horizontal, vertical) == pytest.approx(1 / MARGIN, rel=1e-3)
+
+
+def test_one_atom_is_large_and_in_the_middle():
+    camera = fit(View(), [np.array([[5.0, 6.0, 7.0]])], SIZE)
+    assert camera.centre == pytest.approx((5, 6, 7))
+    assert reach(camera, np.array([[5.0, 6.0, 7.0]]))[1] == pytest.approx(1 / MARGIN, rel=1e-3)
+
+
+def test_what_fell_far_away_does_not_shrink_the_rest():
+    start = grid_with_two_balls(8)
+    without = fit(View(), [start[:625]], SIZE, start)
+    after = fit(View(), [grid_with_two_balls(-500)], SIZE, start)
+    assert after.width == without.width
+    assert after.centre == without.centre
+
+
+def test_what_is_leaving_is_still_shown():
+    start = grid_with_two_balls(8)
+    camera = fit(View(), [start, grid_with_two_balls(-8), grid_with_two_balls(-900)], SIZE)
+    assert max(reach(camera, start)) <= 1
+    assert max(reach(camera, grid_with_two_balls(-8))) <= 1
+
+
+def test_a_scene_that_has_moved_as_a_whole_is_followed():
+    start = grid_with_two_balls(8)
+    camera = fit(View(), [start + [0.0, 300.0, 0.0]], SIZE, start)
+    assert max(reach(camera, start + [0.0, 300.0, 0.0])) == pytest.approx(1 / MARGIN, rel=1e-3)
+
+
+def test_two_halves_that_fly_apart_are_both_shown():
+    string = np.stack([np.zeros(70), np.arange(70) * 0.25, np.zeros(70)], axis=1)
+    start = np.vstack([string - [3, 0, 0], string + [3, 0, 0]])
+    apart = np.vstack([string - [60, 0, 0], string + [60, 0, 0]])
+    assert max(reach(fit(View(), [apart], SIZE, start), apart)) <= 1
+
+
+def test_width_and_look_at_are_obeyed():
+    atoms = grid_with_two_balls(8)
+    camera = fit(View(look_at=(1.0, 2.0, 3.0), width=12.5), [atoms], SIZE)
+    assert (camera.centre, camera.width) == ((1.0, 2.0, 3.0), 12.5)
+    assert fit(View(width=12.5), [atoms], SIZE).width == 12.5
+    around = fit(View(look_at=(1.0, 2.0, 3.0)), [atoms], SIZE)
+    assert around.centre == (1.0, 2.0, 3.0)
+    assert max(reach(around, atoms)) == pytest.approx(1 / MARGIN, rel=1e-3)
+
+
+def test_a_string_seen_from_its_end_stays_before_the_eye():
+    string = np.stack([np.arange(200.0), np.zeros(200), np.zeros(200)], axis=1)
+    camera = fit(View(0, 0), [string], SIZE)
+    assert (camera.see(string)[2] * camera.convergence < 0.75).all()
+
+
+def test_only_places_that_can_be_drawn_count():
+    atoms = np.array([[0.0, 0, 0], [np.nan, 0, 0], [0, np.inf, 0], [0, 0, -2e9], [3, 0, 0]])
+    assert is_drawable(atoms).tolist() == [True, False, False, False, True]
+    assert fit(View(), [atoms], SIZE) == fit(View(), [atoms[[0, 4]]], SIZE)
+
+
+@pytest.mark.parametrize("atoms", [np.empty((0, 3)), np.full((4, 3), np.nan), np.eye(3) * 1e9, np.full((2, 3), 1e308)])
+def test_hopeless_positions_still_give_a_camera(atoms):
+    camera = fit(View(), [atoms], SIZE)
+    assert np.isfinite([*camera.centre, camera.width, camera.convergence]).all()
