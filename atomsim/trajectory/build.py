@@ -14,7 +14,7 @@ import numpy as np
 
 from atomsim.errors import RunError
 from atomsim.trajectory import disk
-from atomsim.trajectory.document import FIELDS, contents_digest, document
+from atomsim.trajectory.document import FIELDS, contents_digest, document, storable
 from atomsim.trajectory.journal import Journal
 from atomsim.trajectory.layout import NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
 from atomsim.trajectory.records import journal_path
@@ -142,7 +142,7 @@ def _write_parameters(journal: Journal, group: Group) -> None:
     group["bond_table"] = header.bond_table
     group["state_sha256"] = journal.series["digest"]
     group["end"] = _texts(end.kind)
-    group["end_report"] = _texts(end.report)
+    group["end_report"] = _texts(storable(end.report))
     group["contents_sha256"] = _texts(contents_digest(header, end, journal.series))
 
 

@@ -16,7 +16,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from atomsim.core.model import GroupSpan, Origin
-from atomsim.trajectory.guard import DamageError
+from atomsim.trajectory.guard import DamageError, odd
 from atomsim.trajectory.header import AtomNumbers, End, Header, Versions
 from atomsim.trajectory.rows import Series
 
@@ -50,7 +50,7 @@ FIELDS: Mapping[str, Kind] = {
     "platform": "text",
 }
 
-_PYTHON_TYPE = {"text": str, "texts": str, "whole": int, "wholes": int, "real": float, "flag": bool}
+_PYTHON_TYPE: Mapping[Kind, Any] = {"text": str, "texts": str, "whole": int, "wholes": int, "real": float, "flag": bool}
 _MOST_ATOMS = 2**31 - 1
 _MOST_ROUNDS = 2**63 - 1
 
@@ -79,14 +79,19 @@ def document(header: Header) -> Document:
         "python_version": header.versions.python,
         "platform": header.versions.platform,
     }
-    return {name: _storable(value) for name, value in values.items()}
+    return {name: _plain(values[name], kind) for name, kind in FIELDS.items()}
 
 
-def _storable(value: Any) -> Any:
-    """Keep to characters that UTF-8 can write and a C string can end in: a file name may hold any bytes."""
-    if isinstance(value, str):
-        return value.replace("\0", "\\0").encode("utf-8", "backslashreplace").decode("utf-8")
-    return [_storable(part) for part in value] if isinstance(value, list) else value
+def _plain(value: Any, kind: Kind) -> Any:
+    """Return a value as Python's own type, for NumPy's numbers and odd file names must not make a file unreadable."""
+    if isinstance(value, list):
+        return [_plain(part, kind) for part in value]
+    return storable(value) if _PYTHON_TYPE[kind] is str else _PYTHON_TYPE[kind](value)
+
+
+def storable(text: str) -> str:
+    """Replace what UTF-8 cannot write and what would end a C string."""
+    return text.replace("\0", "\\0").encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def check_version(values: Mapping[str, Any]) -> None:
@@ -145,12 +150,12 @@ def end_from(values: Mapping[str, Any]) -> End:
     kind, report = values.get("end"), values.get("end_report")
     if kind in ("finished", "interrupted", "blew up", "killed") and isinstance(report, str):
         return End(kind, report)
-    raise DamageError(_words("end"))
+    raise odd("`end` makes no sense")
 
 
 def contents_digest(header: Header, end: End, series: Series) -> str:
     """Return SHA-256 over all of a trajectory but positions and velocities, which the state digests in it cover."""
-    texts = {**document(header), "end": end.kind, "end_report": _storable(end.report)}
+    texts = {**document(header), "end": end.kind, "end_report": storable(end.report)}
     digest = hashlib.sha256(json.dumps(texts).encode())
     for array in (header.bond, header.bond_table, series):
         digest.update(array.tobytes())
@@ -165,7 +170,7 @@ def _is_kind(value: Any, kind: Kind) -> bool:
 
 def _origins(values: Mapping[str, Any]) -> tuple[Origin, ...]:
     names, files, lines = values["rule_names"], values["rule_files"], values["rule_lines"]
-    _require(len(names) == len(files) == len(lines), "rule_names")
+    _require(len(names) == len(files) == len(lines), "rule_lines")
     _require(all("." in name for name in names), "rule_names")
     sections = [name.partition(".") for name in names]
     rows = zip(sections, files, lines, strict=True)
@@ -191,8 +196,4 @@ def _check_bonds(bond: AtomNumbers, bond_table: AtomNumbers, n_atoms: int, n_ori
 
 def _require(holds: bool, name: str) -> None:
     if not holds:
-        raise DamageError(_words(name))
-
-
-def _words(name: str) -> str:
-    return f"damaged, or not a trajectory of atomsim (`{name}` makes no sense)"
+        raise odd(f"`{name}` makes no sense")

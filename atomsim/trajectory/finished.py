@@ -11,7 +11,7 @@ import numpy as np
 
 from atomsim.core.model import Floats
 from atomsim.trajectory.document import FIELDS, Kind, check_version, contents_digest, end_from, header_from
-from atomsim.trajectory.guard import DamageError, check_room
+from atomsim.trajectory.guard import DamageError, check_room, odd
 from atomsim.trajectory.header import Header
 from atomsim.trajectory.layout import NUMBERS, PARAMETERS, PARTICLES, chunk_rows
 from atomsim.trajectory.plain import PlainFile
@@ -61,7 +61,7 @@ class Finished:
         self._position = file.chunks(f"{PARTICLES}/position/value", shape, rows)
         self._velocity = file.chunks(f"{PARTICLES}/velocity/value", shape, rows)
         if not self._position.compressed == self._velocity.compressed == self.header.compress:
-            raise DamageError("damaged, or not a trajectory of atomsim (it is compressed in another way)")
+            raise odd("it is compressed in another way")
 
 
 def _header(file: PlainFile) -> Header:
@@ -87,7 +87,7 @@ def _series(file: PlainFile, time_step: float) -> Series:
     rounds = file.array(f"{PARTICLES}/position/step", "<i8", (None,))
     n_frames = len(rounds)
     if n_frames == 0:
-        raise DamageError("not a trajectory of atomsim (it holds no frame)")
+        raise odd("it holds no frame")
     check_room(n_frames * SERIES.itemsize)
     series = np.empty(n_frames, SERIES)
     series["round"] = rounds

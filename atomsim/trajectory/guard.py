@@ -7,6 +7,7 @@ never in a request for more memory than there is.
 from __future__ import annotations
 
 import os
+import re
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,6 +18,11 @@ from atomsim.errors import AtomsimError, InputError
 
 class DamageError(Exception):
     """A file is not what it should be; the message completes the sentence that begins with its name."""
+
+
+def odd(detail: str) -> DamageError:
+    """Return the error for a file of which nobody can tell whether it was damaged or written by another program."""
+    return DamageError(f"damaged, or not a trajectory of atomsim ({detail})")
 
 
 @contextmanager
@@ -43,10 +49,13 @@ def reading(path: Path) -> Iterator[None]:
 def _in_words(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror and not error.strerror.startswith("Unable to"):
         return error.strerror
-    if "truncated file" in str(error):
+    # A KeyError would put its text in quotes.
+    text = " ".join(str(error.args[0] if isinstance(error, KeyError) and error.args else error).split())
+    if "truncated file" in text:
         return "damaged: the end of the file is missing"
-    detail = " ".join(str(error).split())[:200]
-    return f"damaged, or not a trajectory of atomsim ({detail or type(error).__name__})"
+    hdf5 = re.fullmatch(r"(?:Unable to|Can't) [^(]*\((.*)\)", text)
+    detail = f"HDF5 says: {hdf5[1]}" if hdf5 else text or type(error).__name__
+    return str(odd(detail[:200]))
 
 
 def first_bytes(path: Path, count: int) -> bytes:

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import h5py
 import numpy as np
 
-from atomsim.trajectory.guard import DamageError, check_room
+from atomsim.trajectory.guard import DamageError, check_room, odd
 
 Dataset: TypeAlias = Any  # h5py has no types
 Array: TypeAlias = np.ndarray[Any, Any]
@@ -49,7 +49,7 @@ class PlainFile:
         _check_form(path, dataset, dtype, shape)
         plan = dataset.id.get_create_plist()
         if plan.get_layout() != h5py.h5d.CONTIGUOUS or dataset.id.get_storage_size() != dataset.nbytes:
-            raise DamageError(f"damaged, or not a trajectory of atomsim (`{path}` is stored in another way)")
+            raise odd(f"`{path}` is stored in another way")
         self._check_size(path, dataset.nbytes)
         return np.asarray(dataset[()])
 
@@ -72,11 +72,11 @@ class PlainFile:
         _check_form(path, dataset, "<f8", shape)
         chunk_shape = (rows, *shape[1:])
         if dataset.chunks != chunk_shape:
-            raise DamageError(f"damaged, or not a trajectory of atomsim (`{path}` is cut into other chunks)")
+            raise odd(f"`{path}` is cut into other chunks")
         plan = dataset.id.get_create_plist()
         filters = tuple(plan.get_filter(i)[0] for i in range(plan.get_nfilters()))
         if filters not in ((), _SHUFFLE_AND_GZIP):
-            raise DamageError(f"not a trajectory of atomsim (`{path}` is compressed in another way)")
+            raise odd(f"`{path}` is compressed in another way")
         return Chunks(path, dataset.id, chunk_shape, bool(filters), self._size)
 
     def _check_size(self, path: str, n_bytes: int) -> None:
@@ -88,16 +88,16 @@ class PlainFile:
         here = self._file
         for name in path.split("/"):
             if not isinstance(here, h5py.Group) or name not in here:
-                raise DamageError(f"not a trajectory of atomsim (`{path}` is missing)")
+                raise odd(f"`{path}` is missing")
             if not isinstance(here.get(name, getlink=True), h5py.HardLink):
-                raise DamageError(f"not a trajectory of atomsim (`{path}` is a link that leads elsewhere)")
+                raise odd(f"`{path}` is a link that leads elsewhere")
             here = here[name]
         if not isinstance(here, h5py.Dataset):
-            raise DamageError(f"not a trajectory of atomsim (`{path}` is not a dataset)")
+            raise odd(f"`{path}` is not a dataset")
         # Even the shape of a virtual dataset may be looked up in another file, so this comes before all else.
         plan = here.id.get_create_plist()
         if plan.get_layout() == h5py.h5d.VIRTUAL or plan.get_external_count() > 0:
-            raise DamageError(f"not a trajectory of atomsim (`{path}` is kept in another file)")
+            raise odd(f"`{path}` is kept in another file")
         return here
 
 
@@ -108,10 +108,10 @@ def _check_form(path: str, dataset: Dataset, dtype: str | None, shape: tuple[int
     else:
         has_type = dataset.dtype == np.dtype(dtype)
     if not has_type:
-        raise DamageError(f"damaged, or not a trajectory of atomsim (`{path}` has another type)")
+        raise odd(f"`{path}` has another type")
     found = dataset.shape
     if len(found) != len(shape) or any(want not in (None, got) for want, got in zip(shape, found, strict=True)):
-        raise DamageError(f"damaged, or not a trajectory of atomsim (`{path}` has another shape)")
+        raise odd(f"`{path}` has another shape")
 
 
 class Chunks:
