@@ -8,7 +8,7 @@ per component, which lets every operation run along contiguous memory.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import accumulate, pairwise, starmap
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -89,10 +89,17 @@ def _form(first: Indices, second: Indices, rest_squared: Floats) -> BondForm:
     n_atoms = atoms.stop - atoms.start
     if first.size >= DENSE_FILL * n_atoms * (n_atoms - 1) / 2:
         return DenseForm(atoms, first, second, rest_squared)
-    runs = list(_runs_of(first, second))
-    if first.size >= RUN_PAIRS * len(runs):
-        return OffsetForm(atoms, first, second, rest_squared, runs)
+    order = np.lexsort((first, second - first))
+    bounds = _run_bounds(first[order], second[order])
+    if first.size >= RUN_PAIRS * (len(bounds) - 1):
+        return OffsetForm(atoms, first[order], second[order], rest_squared[order], bounds)
     return GeneralForm(atoms, first, second, rest_squared)
+
+
+def _run_bounds(first: Indices, second: Indices) -> list[int]:
+    """Cut pairs sorted by (offset, first) into runs: run r is pairs bounds[r] to bounds[r + 1]."""
+    cuts = np.flatnonzero((np.diff(second - first) != 0) | (np.diff(first) > RUN_GAP)) + 1
+    return [0, *cuts.tolist(), first.size]
 
 
 def square_distance(difference: Floats, squared: Floats, out: Floats) -> None:
@@ -178,25 +185,27 @@ class OffsetForm:
 
     name = "offset"
 
-    def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats, runs: list[Run]) -> None:
-        n_atoms = atoms.stop - atoms.start
-        ends = np.cumsum([run.stop - run.start for run in runs]).tolist()
-        pieces = [slice(start, stop) for start, stop in zip([0, *ends], ends, strict=False)]
+    def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats, bounds: list[int]) -> None:
+        runs = [
+            Run(int(second[start] - first[start]), int(first[start]), int(first[stop - 1]) + 1)
+            for start, stop in pairwise(bounds)
+        ]
+        ends = list(accumulate((run.stop - run.start for run in runs), initial=0))
         self.atoms = atoms
         self._rest_squared = np.zeros(ends[-1])
         is_bound = np.zeros(ends[-1], dtype=bool)
-        for run, piece in zip(runs, pieces, strict=True):
-            mine = (second - first == run.offset) & (first >= run.start) & (first < run.stop)
-            place = first[mine] - run.start
-            self._rest_squared[piece][place] = rest_squared[mine]
-            is_bound[piece][place] = True
+        for run, begin, pairs in zip(runs, ends, starmap(slice, pairwise(bounds)), strict=False):
+            place = first[pairs] + (begin - run.start)
+            self._rest_squared[place] = rest_squared[pairs]
+            is_bound[place] = True
         self._unbound = np.flatnonzero(~is_bound)
         self._difference = np.empty((3, ends[-1]))
         self._squared = np.empty((3, ends[-1]))
         self._weight = np.empty(ends[-1])
-        self._subtotal = np.empty((3, n_atoms))
+        self._subtotal = np.empty((3, atoms.stop - atoms.start))
         self._runs = [
-            (run.upper, run.lower, self._difference[:, piece]) for run, piece in zip(runs, pieces, strict=True)
+            (run.upper, run.lower, self._difference[:, start:stop])
+            for run, (start, stop) in zip(runs, pairwise(ends), strict=True)
         ]  # offsets rise; so, for each atom, do its partners above, and its partners below fall
 
     def subtotal(self, position: Floats) -> Floats:
@@ -233,16 +242,6 @@ class Run(NamedTuple):
     def upper(self) -> slice:
         """The pairs' higher atoms."""
         return slice(self.start + self.offset, self.stop + self.offset)
-
-
-def _runs_of(first: Indices, second: Indices) -> Iterator[Run]:
-    """Describe pairs as runs, in rising offset; a gap longer than RUN_GAP atoms begins a new one."""
-    offsets = second - first
-    for offset in np.unique(offsets).tolist():
-        atoms = first[offsets == offset]
-        breaks = np.flatnonzero(np.diff(atoms) > RUN_GAP) + 1
-        for run in np.split(atoms, breaks):
-            yield Run(offset, int(run[0]), int(run[-1]) + 1)
 
 
 class GeneralForm:
@@ -288,5 +287,5 @@ class Scatter:
         """Return the sum on each atom, (3, n_atoms), of pair forces (3, n_pairs)."""
         np.negative(force, out=self._weight[:, 0])
         self._weight[:, 1] = force
-        total: Floats = np.bincount(self._place, weights=self._weight.reshape(-1), minlength=3 * self._n_atoms)
-        return total.reshape(3, self._n_atoms)
+        total = np.bincount(self._place, weights=self._weight.reshape(-1), minlength=3 * self._n_atoms)
+        return np.asarray(total, dtype=np.float64).reshape(3, self._n_atoms)
