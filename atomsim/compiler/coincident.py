@@ -2,35 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from atomsim.core.model import CollisionTable, Floats, Indices, Within
+from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
+
+Pairs = tuple[Indices, Indices]
 
 
-def coincident_pairs(position: Floats, table: CollisionTable) -> tuple[Indices, Indices]:
-    """Return the pairs of a collision table at distance zero: sort atoms by place, compare equal neighbours only."""
-    order = np.lexsort(position.T)
-    same = np.flatnonzero((position[order[1:]] == position[order[:-1]]).all(axis=1))
-    if not same.size:
-        return order[:0], order[:0]
-    runs = np.split(same, np.flatnonzero(np.diff(same) > 1) + 1)
-    crowds = [np.sort(order[run[0] : run[-1] + 2]) for run in runs]
-    pairs = [pair for crowd in crowds for pair in _pairs_among(crowd, table)]
-    first, second = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+def coincident_pairs(position: Floats, table: CollisionTable) -> Pairs:
+    """Return pairs of a collision table at distance zero: not all (a crowd has too many), but some at every such place.
+
+    Args:
+        position: atom centres [length], (n_atoms, 3).
+        table: the declared collisions.
+    """
+    found = [
+        _within(position, block) if isinstance(block, Within) else _between(position, block) for block in table.blocks
+    ]
+    first, second = np.concatenate(found, axis=1)
     return first, second
 
 
-def _pairs_among(crowd: Indices, table: CollisionTable) -> Iterator[tuple[int, int]]:
-    """Yield the pairs of a table among a few atoms."""
-    for block in table.blocks:
-        if isinstance(block, Within):
-            inside = np.isin(crowd, block.atoms)
-            places = np.searchsorted(block.atoms, crowd[inside])
-            one, other = np.triu_indices(places.size, 1)
-            far = places[other] - places[one] >= block.min_gap
-            yield from zip(crowd[inside][one[far]].tolist(), crowd[inside][other[far]].tolist(), strict=True)
-        else:
-            left, right = crowd[np.isin(crowd, block.left)], crowd[np.isin(crowd, block.right)]
-            yield from ((i, k) for i in left.tolist() for k in right.tolist() if i != k)
+def _within(position: Floats, block: Within) -> Pairs:
+    """Of the atoms at one place, the first and the last are furthest apart in index."""
+    order, start, stop = _crowds(position[block.atoms])
+    low, high = order[start], order[stop - 1]
+    collides = high - low >= block.min_gap
+    return block.atoms[low[collides]], block.atoms[high[collides]]
+
+
+def _between(position: Floats, block: Between) -> Pairs:
+    """Of the atoms at one place, those of the left side come first, each side in order.
+
+    An atom may be on both sides: if the first of the left is the last of the right, the last of the left and the first
+    of the right are the pair to look at.
+    """
+    atoms = np.concatenate((block.left, block.right))
+    order, start, stop = _crowds(position[atoms])
+    before = np.concatenate(([0], np.cumsum(order < block.left.size)))
+    middle = start + before[stop] - before[start]
+    is_mixed = (start < middle) & (middle < stop)
+    start, middle, stop = start[is_mixed], middle[is_mixed], stop[is_mixed]
+    first = atoms[order[np.concatenate((start, middle - 1))]]
+    second = atoms[order[np.concatenate((stop - 1, middle))]]
+    return first[first != second], second[first != second]
+
+
+def _crowds(position: Floats) -> tuple[Indices, Indices, Indices]:
+    """Sort by place: the atoms order[start[n]:stop[n]], ascending, are a crowd of two or more at one place."""
+    order = np.lexsort(position.T)
+    is_new = np.ones(order.size + 1, dtype=bool)
+    is_new[1:-1] = (position[order[1:]] != position[order[:-1]]).any(axis=1)
+    bounds = np.flatnonzero(is_new)
+    start, stop = bounds[:-1], bounds[1:]
+    return order, start[stop - start > 1], stop[stop - start > 1]
