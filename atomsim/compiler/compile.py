@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Iterable
 from typing import TypeVar, assert_never
@@ -12,6 +13,7 @@ from atomsim.compiler.coincident import coincident_pairs
 from atomsim.compiler.pairs import RuleError, expand
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
 from atomsim.compiler.shapes import count_atoms, place, unit
+from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.memory import free_memory, readable_bytes
 from atomsim.core.model import (
     Between,
@@ -100,11 +102,12 @@ class _Compiler:
         n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
         self._require_room(n_atoms)
         self._selections = Selections(layouts, n_atoms)
-        placed = [place(group) for group in scene.groups.values()]
-        self._placed = np.concatenate([position for position, _ in placed])
-        velocity = np.concatenate([velocity for _, velocity in placed])
-        self._require_finite(layouts, velocity)
-        self._position = _jittered(self._placed, scene.jitter)
+        with np.errstate(over="ignore", invalid="ignore"):  # what grows too large is reported next
+            placed = [place(group) for group in scene.groups.values()]
+            self._placed = np.concatenate([position for position, _ in placed])
+            velocity = np.concatenate([velocity for _, velocity in placed])
+            self._position = _jittered(self._placed, scene.jitter)
+            self._require_finite(layouts, velocity)
         bonds = [self._bond_table(name, entry) for name, entry in scene.bonds.items()]
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
         forces = [self._force(name, entry) for name, entry in scene.forces.items()]
@@ -157,6 +160,9 @@ class _Compiler:
         except SelectionError as error:
             self._complain(path, str(error))
             return None
+        except MemoryError as error:
+            self._complain(path, f"this binds too much: {error}, and the memory is full")
+            return None
         if self._found_coincident(path, first, second, "bound"):
             return None
         initial = squared_distance(self._placed[first].T, self._placed[second].T)
@@ -171,7 +177,7 @@ class _Compiler:
         except SelectionError as error:
             self._complain(path, str(error))
             return None
-        if not any(_has_pairs(block) for block in table.blocks):
+        if not n_collision_pairs(table):
             self._complain(path, "nothing can collide: there are no two different atoms here")
             return None
         first, second = coincident_pairs(self._placed, table)
@@ -229,7 +235,7 @@ class _Compiler:
             same = np.flatnonzero((position[first] == position[second]).all(axis=1))
             if same.size:
                 one, other = int(first[same[0]]), int(second[same[0]])
-                more = f" ({same.size - 1} more pairs likewise)" if same.size > 1 else ""
+                more = " (and so do others)" if same.size > 1 else ""
                 self._complain(
                     path, f"{self._name(one)} and {self._name(other)} are {what} but start at the same place{more}"
                 )
@@ -252,15 +258,16 @@ class _Compiler:
         self._stop_if_wrong()
 
     def _require_pair_room(self, path: Path, bonds: Bonds) -> None:
-        """Refuse an all-pairs rule whose pairs do not fit into memory, before making any."""
-        if bonds.rule != "all-pairs":
-            return
-        if bonds.between is not None:
-            left, right = (self._selections.atoms(side).size for side in bonds.between)
-            n_pairs = left * right
+        """Refuse a rule whose pairs can be counted beforehand and do not fit into memory, before making any."""
+        sizes = [self._selections.atoms((part,)).size for part in bonds.within or ()]
+        if bonds.rule == "neighbour":
+            n_pairs = sum(size * min(bonds.reach, size) for size in sizes)
+        elif bonds.rule == "all-pairs" and bonds.between is not None:
+            n_pairs = math.prod(self._selections.atoms(side).size for side in bonds.between)
+        elif bonds.rule == "all-pairs":
+            n_pairs = sum(math.comb(size, 2) for size in sizes)
         else:
-            sizes = [self._selections.atoms((part,)).size for part in bonds.within or ()]
-            n_pairs = sum(size * (size - 1) // 2 for size in sizes)
+            return
         if n_pairs * BYTES_PER_PAIR > free_memory():
             raise RuleError("rule", self._too_large(n_pairs * BYTES_PER_PAIR, f"{n_pairs:,} bonds"))
 
@@ -275,7 +282,7 @@ class _Compiler:
         """Refuse numbers that are finite one by one but not where they put the atoms."""
         for name, layout in layouts.items():
             atoms = slice(layout.start, layout.stop)
-            squared = squared_distance(self._placed[atoms].T, velocity[atoms].T)
+            squared = squared_distance(self._position[atoms].T, velocity[atoms].T)
             if not np.isfinite(squared).all():
                 self._complain(("groups", name), "its numbers are too large to compute with")
         self._stop_if_wrong()
@@ -289,7 +296,12 @@ class _Compiler:
 
     def _stop_if_wrong(self) -> None:
         if self._problems:
-            raise SceneError(self._problems)
+            raise SceneError(sorted(self._problems, key=_place_in_text))
+
+
+def _place_in_text(problem: Problem) -> tuple[str, int, int]:
+    mark = problem.mark
+    return mark.file, mark.line, mark.column
 
 
 def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
@@ -304,13 +316,6 @@ def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
 def _rest_squared(rest: Rest, initial: Floats) -> Floats:
     """Return r² per pair: the squared initial distance itself, without the detour through the root, or a number's."""
     return initial if rest == "initial" else np.full(initial.shape, rest * rest)
-
-
-def _has_pairs(block: Within | Between) -> bool:
-    """Return whether a block of collisions holds any pair of different atoms."""
-    if isinstance(block, Within):
-        return block.atoms.size > block.min_gap
-    return np.union1d(block.left, block.right).size > 1
 
 
 def _hex_color(color: str) -> str:

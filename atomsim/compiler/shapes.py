@@ -23,6 +23,7 @@ from atomsim.scene.language import (
     StringGroup,
     Vector,
 )
+from atomsim.scene.language.base import LARGEST_WHOLE_NUMBER
 
 RING_PLANE = {"z": (0, 1), "y": (0, 2), "x": (1, 2)}
 """The two axes of a ring's plane, by the axis through it; angles are counted from the first."""
@@ -113,7 +114,7 @@ def _sides(group: PolygonGroup) -> list[tuple[Vector, Vector]]:
 
 def _steps_along(start: Vector, stop: Vector, spacing: float) -> int:
     """Return into how many even steps a side is divided."""
-    return max(1, round(math.dist(start, stop) / spacing))
+    return max(1, round(min(math.dist(start, stop) / spacing, LARGEST_WHOLE_NUMBER)))
 
 
 def _along_side(start: Vector, stop: Vector, spacing: float) -> Floats:

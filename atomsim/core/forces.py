@@ -31,7 +31,8 @@ def quantise(value: float) -> float:
     >>> quantise(0.1) == 0.1, round(quantise(0.1), 12)
     (False, 0.1)
     """
-    return round(value * 1099511627776.0) / 1099511627776.0
+    scaled = value * 1099511627776.0
+    return round(scaled) / 1099511627776.0 if abs(scaled) < 2.0**52 else value  # beyond, a float has no fraction
 
 
 def oscillation(force: OscillateForce, round_index: int) -> float:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Indices
 
 TILE = 1 << 18
@@ -17,6 +18,12 @@ TILE = 1 << 18
 
 DENSE_LIMIT = 1 << 22
 """Up to so many pairs it is cheaper to look at all of them than to sort atoms into cells."""
+
+LARGE = 1 << 26
+"""Bytes of pairs from which on it is worth asking whether more will fit."""
+
+COPIES = 6
+"""How often the pairs found are copied, at the worst moment, until they are a table."""
 
 _MAX_CELL = float(1 << 19)
 """Cells are counted from the middle of the scene; whatever lies further out shares the outermost cell."""
@@ -32,10 +39,20 @@ def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indic
 
     Returns:
         Indices into `left` and into `right` (or again `left`).
+
+    Raises:
+        MemoryError: so many pairs are near that they do not fit.
     """
     n_left = left.shape[1]
     n_right = n_left if right is None else right.shape[1]
-    found = list(_by_tiles(left, right, cutoff) if n_left * n_right <= DENSE_LIMIT else _by_cells(left, right, cutoff))
+    search = _by_tiles if n_left * n_right <= DENSE_LIMIT else _by_cells
+    found: list[Indices] = []
+    size = 0
+    for band in search(left, right, cutoff):
+        found.append(band)
+        size += band.nbytes
+        if size > LARGE and size * COPIES > free_memory():
+            raise MemoryError(f"more than {size // 8:,} pairs are near each other")
     if not found:
         empty = np.empty(0, dtype=np.int64)
         return empty, empty
