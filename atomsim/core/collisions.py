@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from atomsim.core.model import Between, CollisionTable, Floats, Indices
+from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
 from atomsim.core.near import near_pairs, squared_distance
 
 CONTACT_SQUARED = 4.0
@@ -43,7 +43,7 @@ class NearList:
         involved = position[:, self._atoms]
         if self._made_at is not None:
             moved = squared_distance(self._made_at, involved).max()
-            if 4.0 * moved < self._skin * self._skin:
+            if 4.0 * moved < 0.999999 * self._skin * self._skin:  # a little early, against rounding
                 return False
         self._made_at = involved.copy()
         self.pairs = [table_pairs_near(table, position, 2.0 + self._skin) for table in self._tables]
@@ -88,3 +88,17 @@ def as_index(atoms: Indices) -> slice | Indices:
     if atoms.size and atoms[-1] - atoms[0] == atoms.size - 1:
         return slice(int(atoms[0]), int(atoms[-1]) + 1)
     return atoms
+
+
+def n_collision_pairs(table: CollisionTable) -> int:
+    """Return how many pairs a table declares; those in several blocks are counted in each."""
+    return sum(_n_block_pairs(block) for block in table.blocks)
+
+
+def _n_block_pairs(block: Within | Between) -> int:
+    """Return how many pairs of different atoms a block holds."""
+    if isinstance(block, Within):
+        n_reached = max(0, block.atoms.size - block.min_gap)
+        return n_reached * (n_reached + 1) // 2
+    n_both = int(np.intersect1d(block.left, block.right).size)
+    return int(block.left.size) * int(block.right.size) - n_both * (n_both + 1) // 2

@@ -27,6 +27,10 @@ class Observer:
         The potential of a bond is U(d) = (d² − r²)/2 − r² ln(d/r), of a contact the same with r = 2; they are divided
         by τ because the impulse is not multiplied by it, and so the sum of the energies is conserved as τ → 0.
         """
+        with np.errstate(all="ignore"):  # on its way to a blow-up a state is finite and its energy may not be
+            return self._observe(state)
+
+    def _observe(self, state: State) -> Observables:
         position = np.ascontiguousarray(state.position.T)
         velocity = state.velocity
         bonds = sum(_bond_energy(table, position) for table in self._bonds)
