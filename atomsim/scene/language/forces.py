@@ -11,7 +11,6 @@ from atomsim.scene.language.base import (
     Axis,
     Declaration,
     Number,
-    Positive,
     Rest,
     Round,
     Selection,
@@ -77,7 +76,7 @@ class Oscillate(ForceBase):
     """Impulse · sin(2π · round / period + phase) per round."""
     impulse: Vector
     """The largest impulse per round [velocity]."""
-    period: Positive
+    period: Annotated[float, Field(ge=1e-6, allow_inf_nan=False)]
     """Rounds per swing."""
     phase: Number = 0.0
     """Angle at round 0 [radians]."""
