@@ -54,14 +54,16 @@ def test_what_is_leaving_is_still_shown():
 
 def test_a_scene_that_has_moved_as_a_whole_is_followed():
     start = grid_with_two_balls(8)
-    camera = fit(View(), [start + [0.0, 300.0, 0.0]], SIZE, start)
-    assert max(reach(camera, start + [0.0, 300.0, 0.0])) == pytest.approx(1 / MARGIN, rel=1e-3)
+    moved = start + np.array([0.0, 300.0, 0.0])
+    camera = fit(View(), [moved], SIZE, start)
+    assert max(reach(camera, moved)) == pytest.approx(1 / MARGIN, rel=1e-3)
 
 
 def test_two_halves_that_fly_apart_are_both_shown():
     string = np.stack([np.zeros(70), np.arange(70) * 0.25, np.zeros(70)], axis=1)
-    start = np.vstack([string - [3, 0, 0], string + [3, 0, 0]])
-    apart = np.vstack([string - [60, 0, 0], string + [60, 0, 0]])
+    aside = np.array([1.0, 0.0, 0.0])
+    start = np.vstack([string - 3 * aside, string + 3 * aside])
+    apart = np.vstack([string - 60 * aside, string + 60 * aside])
     assert max(reach(fit(View(), [apart], SIZE, start), apart)) <= 1
 
 

@@ -1,0 +1,189 @@
+"""Strips and single frames as files: their pixels, their bytes, their words, and what is refused."""
+
+import base64
+import io
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from PIL import Image
+
+from atomsim.core.model import Frame, GroupSpan, Observables, Origin
+from atomsim.errors import InputError
+from atomsim.render.camera import View
+from atomsim.render.layout import Layout
+from atomsim.render.strip import Row, atom_color, compose, frames_to
+
+SIZE = (96, 72)
+NOTHING_MEASURED = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
+
+
+def frame(round_index, shift=0.0):
+    ring = np.arange(12) * (np.pi / 6)
+    position = np.stack([3 * np.cos(ring) + shift, 3 * np.sin(ring), 0.1 * ring], axis=1)
+    return Frame(round_index, 0.1 * round_index, position, np.zeros_like(position), "", NOTHING_MEASURED)
+
+
+def row(title="A ring", n_frames=3, **options):
+    frames = tuple(frame(50 * index, index) for index in range(n_frames))
+    return Row(title, frames, np.tile([0.7, 0.2, 0.1], (12, 1)), View(10, 40), **options)
+
+
+def pixels_of(path):
+    with Image.open(path) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def test_frames_are_pasted_pixel_by_pixel(tmp_path):
+    rows = [row(), row("", n_frames=9), row("Third", n_frames=2, background="lightyellow")]
+    out = tmp_path / "strip.png"
+    compose(rows, out, SIZE)
+    layout = Layout(SIZE, (3, 9, 2), (True, False, True), False)
+    strip = pixels_of(out)
+    assert strip.shape == (layout.height, layout.width, 3)
+    for number, shown in enumerate(rows):
+        for index, picture in enumerate(shown.pictures(SIZE)):
+            left, top = layout.corner(number, index)
+            assert (strip[top : top + 72, left : left + 96] == picture).all()
+
+
+def test_titles_and_captions_stand_where_no_frame_is(tmp_path):
+    out = tmp_path / "strip.png"
+    compose([row()], out, SIZE)
+    layout = Layout(SIZE, (3,), (True,), False)
+    is_ink = (pixels_of(out) < 128).all(axis=2)
+    left, top = layout.corner(0, 0)
+    assert is_ink[:top].any()
+    for index in range(3):
+        left = layout.corner(0, index)[0]
+        assert is_ink[top + 72 :, left : left + 96].any()
+        assert not is_ink[top + 72 :, left - 8 : left].any()
+
+
+def test_the_same_rows_give_the_same_bytes_whatever_the_users_settings(tmp_path):
+    for extension in ("png", "jpg", "webp", "pdf", "svg"):
+        one, other = tmp_path / f"one.{extension}", tmp_path / f"other.{extension}"
+        compose([row()], one, SIZE)
+        with mpl.rc_context(
+            {"font.size": 30, "text.color": "red", "savefig.facecolor": "black", "savefig.pad_inches": 3}
+        ):
+            compose([row()], other, SIZE)
+        assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_png_holds_no_version_of_any_program(tmp_path):
+    compose([row()], tmp_path / "strip.png", SIZE)
+    assert b"atplotlib" not in (tmp_path / "strip.png").read_bytes()
+
+
+def test_lossless_formats_hold_the_exact_frames(tmp_path):
+    shown = row(n_frames=1)
+    left, top = Layout(SIZE, (1,), (True,), False).corner(0, 0)
+    compose([shown], tmp_path / "strip.webp", SIZE)
+    compose([shown], tmp_path / "strip.svg", SIZE)
+    [picture] = shown.pictures(SIZE)
+    assert (pixels_of(tmp_path / "strip.webp")[top : top + 72, left : left + 96] == picture).all()
+    [encoded] = re.findall(r'"data:image/png;base64,([^"]+)"', (tmp_path / "strip.svg").read_text())
+    assert (pixels_of(io.BytesIO(base64.b64decode(encoded)))[::-1] == picture).all()  # SVG's y points up here
+
+
+def test_other_formats_are_what_they_say(tmp_path):
+    for extension, magic in {"jpg": b"\xff\xd8", "jpeg": b"\xff\xd8", "pdf": b"%PDF", "svg": b"<?xml"}.items():
+        compose([row()], tmp_path / f"strip.{extension}", SIZE)
+        assert (tmp_path / f"strip.{extension}").read_bytes().startswith(magic)
+
+
+def test_captions_tell_the_round_and_what_was_asked():
+    assert row().captions() == ["round 0", "round 50", "round 100"]
+    assert row(asked=(0, 52, 100)).captions() == ["round 0", "round 50 (nearest to 52)", "round 100"]
+
+
+def test_atoms_that_cannot_be_drawn_are_counted(tmp_path):
+    lost = frame(7)
+    lost.position[0, 0], lost.position[1, 2], lost.position[5, 1] = np.nan, np.inf, 1e12
+    shown = Row("", (frame(0), lost), np.ones((12, 3)))
+    assert shown.notices() == ["", "3 atoms not drawable"]
+    compose([shown], tmp_path / "strip.png", SIZE)
+    assert len(pixels_of(tmp_path / "strip.png")) == Layout(SIZE, (2,), (False,), True).height
+
+
+def test_all_frames_of_a_row_have_the_same_framing():
+    shown = row()
+    first, _, last = shown.pictures(SIZE)
+    alone = [Row("", (one,), shown.color, shown.view).pictures(SIZE)[0] for one in shown.frames]
+    assert (alone[0] == alone[2]).all()
+    assert (first != last).any()
+
+
+@pytest.mark.parametrize("title", ["$x^2$ \\frac{", "環 🎈", "two\nlines\tand a \0", "x" * 10_000, "wide " * 70])
+def test_any_title_can_be_written(tmp_path, title):
+    compose([row(title)], tmp_path / "strip.png", SIZE)
+    right = Layout(SIZE, (3,), (True,), False).width - 14
+    assert (pixels_of(tmp_path / "strip.png")[:30, right:] == 255).all()
+
+
+def test_single_frames(tmp_path):
+    files = frames_to([row()], tmp_path / "new" / "folder", SIZE)
+    assert [file.name for file in files] == ["round-000.png", "round-050.png", "round-100.png"]
+    for file, picture in zip(files, row().pictures(SIZE), strict=True):
+        assert file.parent == tmp_path / "new" / "folder"
+        assert (pixels_of(file) == picture).all()
+
+
+def test_single_frames_of_several_rows(tmp_path):
+    files = frames_to([row(n_frames=1), row(n_frames=2)], tmp_path, SIZE)
+    assert [file.name for file in files] == ["row-1-round-00.png", "row-2-round-00.png", "row-2-round-50.png"]
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "message"),
+    [
+        (
+            "a.gif",
+            SIZE,
+            "a.gif: the extension tells the format; use .png, .jpg, .jpeg, .webp, .pdf or .svg (got `.gif`)",
+        ),
+        ("a.png", (10, 100), "a frame must be from 16 to 4096 pixels wide and high (got 10x100)"),
+        ("a.png", (100, 5000), "a frame must be from 16 to 4096 pixels wide and high (got 100x5000)"),
+        (
+            "a.png",
+            (4096, 100),
+            "a.png: a strip of 8 frames would have 32852×141 pixels, more than 16000 along a side; "
+            "choose fewer rounds or smaller frames",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused(tmp_path, monkeypatch, name, size, message):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError) as caught:
+        compose([row("", n_frames=8)], Path(name), size)
+    assert str(caught.value) == message
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_background_that_is_no_color_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"^background: `grue` is not a color; use a CSS name or #rrggbb$"):
+        compose([row(background="grue")], tmp_path / "a.png", SIZE)
+
+
+def test_frames_do_not_go_into_a_file(tmp_path):
+    (tmp_path / "frames").touch()
+    with pytest.raises(InputError, match=r"frames: this is a file; give the name of a folder$"):
+        frames_to([row()], tmp_path / "frames", SIZE)
+
+
+def test_atoms_have_the_color_of_their_group():
+    where = Origin("groups", "g", "x.yaml", 1)
+    color = atom_color([GroupSpan("a", 0, 2, "#000000", where), GroupSpan("b", 2, 3, "#ff00ff", where)])
+    assert color.tolist() == [[0, 0, 0], [0, 0, 0], [1, 0, 1]]
+    assert atom_color([]).shape == (0, 3)
+
+
+def test_matplotlib_waits_until_it_is_needed():
+    code = "import sys, atomsim.render.strip; print({'matplotlib', 'PIL', 'h5py'} & set(sys.modules))"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == "set()\n"
