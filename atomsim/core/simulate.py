@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
@@ -24,6 +25,9 @@ class Stepper(Protocol):
         """Return a copy of the present state."""
 
 
+REPORT_SECONDS = 0.1
+"""How long a run goes on, about, before it says where it is."""
+
 MakeStepper = Callable[[Model, State], Stepper]
 
 
@@ -33,6 +37,7 @@ def simulate(
     rounds: int,
     record_every: int = 10,
     make_stepper: MakeStepper = NumpyStepper,
+    report: Callable[[int], None] | None = None,
 ) -> Iterator[Frame]:
     """Yield the frames of a run: its first state, every `record_every` rounds, and its last round.
 
@@ -42,6 +47,7 @@ def simulate(
         rounds: the round to run to.
         record_every: rounds between two frames; frames fall on its multiples.
         make_stepper: the backend.
+        report: called several times a second with the round reached, also between frames; what it raises ends the run.
 
     Yields:
         Frames in order of rounds.
@@ -56,10 +62,23 @@ def simulate(
         if state.round_index >= rounds:
             return
         next_round = min(rounds, (state.round_index // record_every + 1) * record_every)
-        stepper.advance(next_round - state.round_index)
+        _advance(stepper, state.round_index, next_round, report)
         before, state = state, stepper.state()
         if not is_finite(state):
             raise _blow_up(model, before, make_stepper)
+
+
+def _advance(stepper: Stepper, round_index: int, stop: int, report: Callable[[int], None] | None) -> None:
+    """Advance to a round in stretches that take about REPORT_SECONDS each; how it is cut changes no bit."""
+    stretch = stop - round_index if report is None else 1
+    while round_index < stop:
+        begin = time.perf_counter()
+        n_rounds = min(stretch, stop - round_index)
+        stepper.advance(n_rounds)
+        round_index += n_rounds
+        if report is not None:
+            report(round_index)
+            stretch = 2 * n_rounds if time.perf_counter() - begin < REPORT_SECONDS else max(1, n_rounds // 2)
 
 
 def frame_of(model: Model, state: State, observer: Observer) -> Frame:

@@ -1,0 +1,5 @@
+"""`python -m atomsim` is `atomsim`."""
+
+from atomsim.cli import main
+
+main()

@@ -1,0 +1,34 @@
+"""The list of commands; knows none of what they do."""
+
+from __future__ import annotations
+
+import typer
+
+from atomsim.cli.compare import compare, verify
+from atomsim.cli.golden import golden
+from atomsim.cli.inspect import check, schema, show
+from atomsim.cli.render import render
+from atomsim.cli.run import recover, run
+
+app = typer.Typer(
+    name="atomsim",
+    help="See what a robot's parts would do: a short YAML scene of bound and colliding unit balls becomes a "
+    "trajectory and a picture.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+for command in (run, render, check, show, compare, verify, recover, schema):
+    app.command()(command)
+app.add_typer(golden, name="golden")
+
+
+@app.callback(invoke_without_command=True)
+def _top(version: bool = typer.Option(False, "--version", help="Print the version and exit.")) -> None:
+    if version:
+        from importlib.metadata import version as version_of
+
+        print(f"atomsim {version_of('atomsim')}")
+        raise typer.Exit

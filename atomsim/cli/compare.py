@@ -1,0 +1,64 @@
+"""`atomsim compare` and `atomsim verify`: are two runs the same, and is a file what its scene gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="A trajectory.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same atoms.")],
+    tolerance: Annotated[float, typer.Option(min=0.0, help="How far numbers may be apart; 0 compares bits.")] = 0.0,
+) -> None:
+    """Say whether two trajectories are identical, or where and by how much they first differ.
+
+    Exit code 1 if they differ.
+
+    Example:
+
+    atomsim compare a.h5 b.h5 --tolerance 1e-9
+    """
+    from atomsim.compare import first_difference
+    from atomsim.trajectory import Trajectory
+
+    with Trajectory(first) as one, Trajectory(second) as other:
+        if one.header.n_atoms != other.header.n_atoms:
+            print(f"different: {first} has {one.header.n_atoms} atoms, {second} {other.header.n_atoms}")
+            raise typer.Exit(1)
+        difference = first_difference(one, other, one.header.groups, tolerance)
+        if difference is not None:
+            print(f"different: {difference}")
+            raise typer.Exit(1)
+        within = f" within {tolerance:g}" if tolerance else ""
+        print(f"identical{within}: {len(one)} frames up to round {one.rounds[-1]}")
+
+
+def verify(trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")]) -> None:
+    """Compute a trajectory again from the scene inside it and compare, bit for bit.
+
+    Exit code 1 if it differs.
+
+    Example:
+
+    atomsim verify out.h5
+    """
+    from atomsim.compare import first_difference
+    from atomsim.compiler import compile_scene
+    from atomsim.core.simulate import simulate
+    from atomsim.scene import loads
+    from atomsim.trajectory import Trajectory
+
+    with Trajectory(trajectory) as recorded:
+        header = recorded.header
+        loaded = loads(header.scene, header.scene_name)
+        model, state = compile_scene(loaded.scene, loaded.source)
+        last_round = int(recorded.rounds[-1])
+        computed = simulate(model, state, last_round, header.record_every)
+        difference = first_difference(recorded, computed, header.groups)
+        if difference is not None:
+            print(f"different: {difference} (first: the file; second: computed now)")
+            raise typer.Exit(1)
+        print(f"identical: {len(recorded)} frames up to round {last_round} are what the scene gives")

@@ -1,0 +1,100 @@
+"""Compiled scenes and trajectories in a few lines for people; decides nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from atomsim.core.bonds import bond_forms
+from atomsim.core.collisions import n_collision_pairs
+from atomsim.core.forces import held_atoms
+from atomsim.core.memory import readable_bytes
+from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model
+
+if TYPE_CHECKING:
+    from atomsim.trajectory import Trajectory
+
+BYTES_PER_ATOM_AND_FRAME = 48
+"""Position and velocity, three float64 each."""
+
+BYTES_PER_FRAME = 256
+"""What a frame takes besides its atoms: digest, observables."""
+
+
+def describe_model(model: Model, rounds: int, record_every: int) -> list[str]:
+    """Return what a scene holds and what running it takes.
+
+    Args:
+        model: the compiled scene.
+        rounds: iteration rounds to run.
+        record_every: rounds between two frames.
+    """
+    n_frames = (rounds - 1) // record_every + 2
+    size = n_frames * (model.n_atoms * BYTES_PER_ATOM_AND_FRAME + BYTES_PER_FRAME)
+    n_bonds = sum(table.first.size for table in model.bonds)
+    n_pairs = sum(n_collision_pairs(table) for table in model.collisions)
+    held = held_atoms(model.forces)
+    return [
+        _line("atoms", f"{model.n_atoms:,}", (_group(group) for group in model.groups)),
+        _line("bonds", f"{n_bonds:,}", (_bonds(table, held) for table in model.bonds)),
+        _line("collisions", f"{n_pairs:,} pairs", (_collisions(table) for table in model.collisions)),
+        _line("forces", f"{len(model.forces)}", (f"{f.origin.name} on {f.atoms.size:,}" for f in model.forces)),
+        _line("run", f"{rounds:,} rounds of τ = {model.time_step:g}", ()),
+        _line("record", f"{n_frames:,} frames, {readable_bytes(size)}", ()),
+        _line("memory", f"about {readable_bytes(_memory(model))}", ()),
+    ]
+
+
+def describe_trajectory(trajectory: Trajectory) -> list[str]:
+    """Return what a trajectory holds, where it came from and how it ended."""
+    header, rounds = trajectory.header, trajectory.rounds
+    overrides = (f"--set {override}" for override in header.overrides)
+    versions = header.versions
+    lines = [
+        f"{trajectory.path}: {header.title}" if header.title else str(trajectory.path),
+        _line("scene", header.scene_name, overrides),
+        _line("atoms", f"{header.n_atoms:,}", (_group(group) for group in header.groups)),
+        _line("bonds", f"{len(header.bond):,}", ()),
+        _line("frames", f"{len(trajectory):,}, round {rounds[0]} to {rounds[-1]} of {header.rounds}", ()),
+        _line("time step", f"τ = {header.time_step:g}", ()),
+        _line("ended", trajectory.end.kind, trajectory.end.report.splitlines()),
+        _line("made with", f"atomsim {versions.program}, NumPy {versions.numpy}, Python {versions.python}", ()),
+        _line("digest", f"{trajectory.digests[-1]} (round {rounds[-1]})", ()),
+        "",
+        f"  {'':<28}{'first frame':>14}{'last frame':>14}",
+    ]
+    for name, series in trajectory.observables.items():
+        if series.ndim == 1:
+            lines.append(f"  {name.replace('_', ' '):<28}{series[0]:>14.6g}{series[-1]:>14.6g}")
+        else:
+            length = (series * series).sum(axis=1) ** 0.5
+            lines.append(f"  {'|' + name.replace('_', ' ') + '|':<28}{length[0]:>14.6g}{length[-1]:>14.6g}")
+    if trajectory.from_journal:
+        lines.append(f"  read from its journal; to make the file: atomsim recover {trajectory.path}")
+    return lines
+
+
+def _line(label: str, value: str, details: Iterable[str]) -> str:
+    """Write one line: what, how much, and its parts."""
+    parts = ", ".join(details)
+    return f"  {label:<11}{value}" + (f": {parts}" if parts else "")
+
+
+def _group(group: GroupSpan) -> str:
+    return f"{group.name} {group.stop - group.start:,}"
+
+
+def _bonds(table: BondTable, held: Indices) -> str:
+    """Name a table, its size and the forms it is computed in."""
+    forms = dict.fromkeys(form.name for form in bond_forms(table, held))
+    return f"{table.origin.name} {table.first.size:,} ({', '.join(forms) or 'held, not computed'})"
+
+
+def _collisions(table: CollisionTable) -> str:
+    return f"{table.origin.name} {n_collision_pairs(table):,}"
+
+
+def _memory(model: Model) -> int:
+    """Estimate what a run holds at once: arrays of the state, tables in their forms, waiting frames."""
+    n_bonds = sum(table.first.size for table in model.bonds)
+    return 60_000_000 + 600 * model.n_atoms + 100 * n_bonds

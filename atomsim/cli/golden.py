@@ -1,0 +1,94 @@
+"""`atomsim golden record|check`: golden trajectories of scenes, and why each was recorded."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from atomsim.core.model import Frame, Model
+
+golden = typer.Typer(help="Golden trajectories: record what a scene gives, and check that it still does.")
+
+Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE...", help="Scenes, YAML files.")]
+Folder = Annotated[Path, typer.Option("--into", help="The folder of the goldens.")]
+
+DEFAULT_FOLDER = Path("tests/golden")
+
+
+@golden.command()
+def record(
+    scenes: Scenes,
+    into: Folder = DEFAULT_FOLDER,
+    reason: Annotated[str, typer.Option(help="Why the goldens change; goes into the log.")] = "",
+) -> None:
+    """Record what scenes give now. A golden that exists is replaced only for a reason, which is logged.
+
+    Example:
+
+    atomsim golden record scenes/rods.yaml --into tests/golden --reason "first recording"
+    """
+    from atomsim.errors import InputError, RunError
+    from atomsim.golden import LOG, golden_path, record_golden, write_golden
+
+    existing = [golden_path(scene, into) for scene in scenes if golden_path(scene, into).exists()]
+    if existing and not reason.strip():
+        raise InputError(f"{existing[0]} exists; say why it changes with --reason")
+    try:
+        into.mkdir(parents=True, exist_ok=True)
+        for scene in scenes:
+            path = golden_path(scene, into)
+            _, frames = _computed(scene)
+            made = record_golden(frames)
+            last_round, digest = list(made.digests.items())[-1]
+            write_golden(made, path)
+            with (into / LOG).open("a") as log:
+                log.write(f"- {scene.stem}: round {last_round} is {digest[:16]}…: {reason.strip() or 'first recording'}\n")
+            print(f"{path}: {len(made.digests)} digests, {len(made.frames)} frames")
+    except OSError as error:
+        raise RunError(f"{into}: cannot be written: {error.strerror}") from None
+
+
+@golden.command()
+def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER) -> None:
+    """Run scenes and compare them with their goldens, bit for bit. A missing golden is a failure.
+
+    Exit code 1 if any differs.
+
+    Example:
+
+    atomsim golden check scenes/rods.yaml --into tests/golden
+    """
+    from atomsim.golden import check_golden, golden_path, read_golden
+
+    n_wrong = 0
+    for scene in scenes:
+        path = golden_path(scene, into)
+        if not path.exists():
+            n_wrong += 1
+            print(f"{scene}: there is no golden {path}; record it with: atomsim golden record {scene} --into {into}")
+            continue
+        model, frames = _computed(scene)
+        approved = read_golden(path)
+        wrong = check_golden(approved, frames, model.groups)
+        n_wrong += wrong is not None
+        print(f"{scene}: {wrong or f'identical, {len(approved.digests)} rounds'}")
+    if n_wrong:
+        print(f"{n_wrong} of {len(scenes)} scenes differ from their goldens", file=sys.stderr)
+        raise typer.Exit(1)
+
+
+def _computed(scene: Path) -> tuple[Model, Iterator[Frame]]:
+    """Return a scene's model and its frames, computed as they are asked for."""
+    from atomsim.compiler import compile_scene
+    from atomsim.core.simulate import simulate
+    from atomsim.scene import load
+
+    loaded = load(scene)
+    model, state = compile_scene(loaded.scene, loaded.source)
+    return model, simulate(model, state, loaded.scene.rounds, loaded.scene.record_every)

@@ -1,0 +1,74 @@
+"""`atomsim check`, `show` and `schema`: what is in a scene, in a trajectory, in the language."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def check(
+    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE...", help="Scenes, YAML files.")],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scenes; may be repeated."),
+    ] = None,
+) -> None:
+    """Validate scenes, compile them, and describe what they would run.
+
+    Every mistake is one line `file:line:column: path: message`; exit code 2 if there is any.
+
+    Example:
+
+    atomsim check scenes/*.yaml
+    """
+    import sys
+
+    from atomsim.cli.describe import describe_model
+    from atomsim.compiler import compile_scene
+    from atomsim.errors import SceneError
+    from atomsim.scene import load
+
+    n_wrong = 0
+    for path in scenes:
+        try:
+            loaded = load(path, settings or ())
+            model, _ = compile_scene(loaded.scene, loaded.source)
+        except SceneError as error:
+            n_wrong += 1
+            print(error, file=sys.stderr)
+        else:
+            title = f": {loaded.scene.title}" if loaded.scene.title else ""
+            print("\n".join([f"{path}{title}", *describe_model(model, loaded.scene.rounds, loaded.scene.record_every)]))
+    if n_wrong:
+        raise typer.Exit(2)
+
+
+def show(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
+    scene: Annotated[bool, typer.Option("--scene", help="Print the scene that made it, and nothing else.")] = False,
+) -> None:
+    """Say what is in a trajectory; `--scene` prints the scene that made it, to be run again.
+
+    Example:
+
+    atomsim show out.h5 --scene > again.yaml
+    """
+    from atomsim.cli.describe import describe_trajectory
+    from atomsim.trajectory import Trajectory
+
+    with Trajectory(trajectory) as frames:
+        print(frames.header.scene.rstrip("\n") if scene else "\n".join(describe_trajectory(frames)))
+
+
+def schema() -> None:
+    """Print the JSON Schema of the scene language, for editors and other tools.
+
+    Example:
+
+    atomsim schema > scene.schema.json
+    """
+    from atomsim.scene.schema import schema_text
+
+    print(schema_text(), end="")

@@ -1,0 +1,74 @@
+"""A line on the terminal that says how far a run is; knows rounds and seconds only."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+REFRESH_SECONDS = 0.1
+"""How often the line is written anew."""
+
+
+class Progress:
+    """Reports rounds per second and time left on a terminal, and nothing where nobody watches.
+
+    Args:
+        begin: the round that the run goes on from.
+        rounds: the round it goes to.
+        is_shown: whether to write at all; by default where standard error is a terminal.
+    """
+
+    def __init__(self, begin: int, rounds: int, is_shown: bool | None = None) -> None:
+        self._begin = begin
+        self._rounds = rounds
+        self._is_shown = sys.stderr.isatty() if is_shown is None else is_shown
+        self._started = time.monotonic()
+        self._written = 0.0
+        self._width = 0
+
+    def report(self, round_index: int) -> None:
+        """Say which round has been reached."""
+        now = time.monotonic()
+        if self._is_shown and now - self._written >= REFRESH_SECONDS:
+            self._written = now
+            self._write(progress_line(self._begin, round_index, self._rounds, now - self._started))
+
+    def clear(self) -> None:
+        """Take the line away."""
+        if self._width:
+            self._write("")
+            sys.stderr.write("\r")
+            sys.stderr.flush()
+
+    def _write(self, line: str) -> None:
+        sys.stderr.write("\r" + line.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(line)
+
+
+def progress_line(begin: int, round_index: int, rounds: int, seconds: float) -> str:
+    """Return the line for a run that has come from `begin` to `round_index` of `rounds` in so many seconds.
+
+    >>> progress_line(0, 1000, 4000, 2.0)
+    'round 1,000 of 4,000  25 %  500 rounds/s  0:06 left'
+    """
+    per_second = (round_index - begin) / seconds if seconds > 0 else 0.0
+    left = duration((rounds - round_index) / per_second) if per_second > 0 else "?"
+    share = 100 * round_index // rounds
+    return f"round {round_index:,} of {rounds:,}  {share} %  {rate(per_second)} rounds/s  {left} left"
+
+
+def rate(per_second: float) -> str:
+    """Write rounds per second with as many digits as mean something."""
+    return f"{per_second:,.0f}" if per_second >= 10 else f"{per_second:.2g}"
+
+
+def duration(seconds: float) -> str:
+    """Write seconds as minutes and hours.
+
+    >>> duration(75), duration(7265)
+    ('1:15', '2:01:05')
+    """
+    minutes, second = divmod(round(seconds), 60)
+    hours, minute = divmod(minutes, 60)
+    return f"{hours}:{minute:02}:{second:02}" if hours else f"{minute}:{second:02}"

@@ -1,0 +1,88 @@
+"""Where two sequences of frames first differ, and by how much; knows neither files nor how frames come about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+
+import numpy as np
+
+from atomsim.core.model import Floats, Frame, GroupSpan
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """The first place where two trajectories differ; `str()` writes it for people."""
+
+    round_index: int
+    message: str
+
+    def __str__(self) -> str:
+        return self.message
+
+
+def first_difference(
+    left: Iterable[Frame],
+    right: Iterable[Frame],
+    groups: Sequence[GroupSpan],
+    tolerance: float = 0.0,
+) -> Difference | None:
+    """Return where two runs of the same atoms first differ, or None if they are the same.
+
+    Args:
+        left: frames in order of rounds.
+        right: frames to compare with.
+        groups: what the atoms are called.
+        tolerance: how far numbers may be apart [length, or length per unit of time]; 0 compares bits, −0.0 being 0.0.
+    """
+    for one, other in zip_longest(left, right):
+        if one is None or other is None or one.round_index != other.round_index:
+            return _missing_round(one, other)
+        if one.digest == other.digest:
+            continue
+        difference = frame_difference(one, other, groups, tolerance)
+        if difference is not None:
+            return difference
+    return None
+
+
+def _missing_round(one: Frame | None, other: Frame | None) -> Difference:
+    """Describe two sequences that do not record the same rounds."""
+    if other is None or (one is not None and one.round_index < other.round_index):
+        assert one is not None  # zip_longest ends with both
+        return Difference(one.round_index, f"round {one.round_index} is only in the first")
+    return Difference(other.round_index, f"round {other.round_index} is only in the second")
+
+
+def frame_difference(
+    one: Frame, other: Frame, groups: Sequence[GroupSpan], tolerance: float = 0.0
+) -> Difference | None:
+    """Return how two frames of the same round differ: which atom first, which most, and by how much."""
+    for what, left, right in (("position", one.position, other.position), ("velocity", one.velocity, other.velocity)):
+        apart = _apart(left, right)
+        differing = np.flatnonzero(~(apart.max(axis=1) <= tolerance))
+        if differing.size:
+            worst = int(differing[np.argmax(apart.max(axis=1)[differing])])
+            size = float(apart[worst].max())
+            return Difference(
+                one.round_index,
+                f"round {one.round_index}: {what} of {differing.size} of {len(apart)} atoms differs, first "
+                f"{atom_name(int(differing[0]), groups)}, most {atom_name(worst, groups)} by {size:.3g}",
+            )
+    return None
+
+
+def _apart(left: Floats, right: Floats) -> Floats:
+    """Return the absolute differences; equal infinities and NaNs are no difference."""
+    with np.errstate(invalid="ignore"):
+        apart: Floats = np.abs(left - right)
+    same = (left == right) | (np.isnan(left) & np.isnan(right))
+    apart[same] = 0.0
+    return apart
+
+
+def atom_name(atom: int, groups: Sequence[GroupSpan]) -> str:
+    """Write an atom as a selection does, with its number: `left[3] (atom 3)`."""
+    group = next(group for group in groups if group.start <= atom < group.stop)
+    return f"{group.name}[{atom - group.start}] (atom {atom})"
