@@ -27,8 +27,8 @@ class NumpyStepper:
         self._near = NearList(model.collisions, model.n_atoms)
         self._forces = prepare_forces(model.forces)
         self._round_index = state.round_index
-        self._position = np.ascontiguousarray(state.position.T)
-        self._velocity = np.ascontiguousarray(state.velocity.T)
+        self._position = np.array(state.position.T, order="C")  # a copy even of a single atom
+        self._velocity = np.array(state.velocity.T, order="C")
         self._impulse = np.empty_like(self._position)
         self._step = np.empty_like(self._position)
 
@@ -40,7 +40,8 @@ class NumpyStepper:
 
     def state(self) -> State:
         """Return a copy of the present state."""
-        return State(self._round_index, np.ascontiguousarray(self._position.T), np.ascontiguousarray(self._velocity.T))
+        position, velocity = (np.array(array.T, order="C") for array in (self._position, self._velocity))
+        return State(self._round_index, position, velocity)
 
     def _advance_one_round(self) -> None:
         """j(n) = Σ forces;  v(n+1) = v(n) + j(n);  c(n+1) = c(n) + τ · v(n+1)."""
