@@ -6,6 +6,7 @@ The bytes depend on the frames alone, not on how the journal groups them or how 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -15,6 +16,7 @@ import numpy as np
 from atomsim.errors import RunError
 from atomsim.trajectory import disk
 from atomsim.trajectory.document import FIELDS, contents_digest, document, storable
+from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal import Journal
 from atomsim.trajectory.layout import NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
 from atomsim.trajectory.records import journal_path
@@ -54,12 +56,12 @@ def _remedy(path: Path) -> str:
 
 
 def _write(journal: Journal, temporary: Path) -> None:
-    with Sink(temporary) as sink:
+    with Sink(temporary) as sink, held() as let_interrupts_through:
         # Everything that could make two identical runs differ is switched off: times are not tracked, and the oldest
         # and newest form of the format that may be chosen are fixed.
         with h5py.File(sink, "w", libver=("earliest", "v110")) as file:
             _write_identity(file, journal.header.versions.program)
-            _write_frames(journal, file)
+            _write_frames(journal, file, let_interrupts_through)
             _write_observables(journal, file)
             _write_bonds(journal, file)
             _write_parameters(journal, file.create_group(PARAMETERS))
@@ -75,7 +77,7 @@ def _write_identity(file: Group, program_version: str) -> None:
     creator.attrs["version"] = np.bytes_(program_version)
 
 
-def _write_frames(journal: Journal, file: Group) -> None:
+def _write_frames(journal: Journal, file: Group, let_interrupts_through: Callable[[], None]) -> None:
     header, series = journal.header, journal.series
     atoms = file.create_group(PARTICLES)
     atoms.attrs["unit_note"] = np.bytes_(UNIT_NOTE)
@@ -93,6 +95,7 @@ def _write_frames(journal: Journal, file: Group) -> None:
         piece = journal.rows(start, min(start + rows, len(series)))
         for name, value in values.items():
             value[start : start + len(piece)] = piece[name]
+        let_interrupts_through()
     species = [np.full(group.stop - group.start, i, "<i4") for i, group in enumerate(header.groups)]
     atoms["mass"] = np.ones(header.n_atoms)
     atoms["species"] = np.concatenate(species)

@@ -78,9 +78,9 @@ class Trajectory(Sequence[Frame]):
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         journal = journal_path(self.path)
-        self.has_journal = journal.exists()
-        found = journal if self.has_journal and not self.path.exists() else self.path
         with reading(self.path):
+            self.has_journal = journal.exists()
+            found = journal if self.has_journal and not self.path.exists() else self.path
             if not found.exists():
                 raise InputError(f"{self.path}: no such file")
             self._source: _Source = self._opened(found)

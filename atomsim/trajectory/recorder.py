@@ -14,6 +14,7 @@ from atomsim.core.model import Frame, State
 from atomsim.errors import InputError, RunError
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
+from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal import Journal
 from atomsim.trajectory.reader import Trajectory
 from atomsim.trajectory.records import journal_path
@@ -48,13 +49,15 @@ class Recorder:
 
     def __init__(self, path: str | Path, header: Header, *, replace: bool = False) -> None:
         path = _trajectory_path(path)
-        _check_target(path, replace=replace)
-        writer = JournalWriter.begin(journal_path(path), header)
-        try:
-            writer.publish(replace=replace)
-        except BaseException:
-            writer.discard()
-            raise
+        with reading(path):
+            _check_target(path, replace=replace)
+        with held():
+            writer = JournalWriter.begin(journal_path(path), header)
+            try:
+                writer.publish(replace=replace)
+            except BaseException:
+                writer.discard()
+                raise
         self._set_up(path, header, writer, None)
 
     @classmethod
@@ -74,7 +77,7 @@ class Recorder:
             RunError: it cannot be written, or another process writes it.
         """
         path = _trajectory_path(path)
-        if not journal_path(path).exists():
+        if not _has_journal(path):
             _turn_back(path, rounds)
         writer = JournalWriter.reopen(journal_path(path))
         try:
@@ -151,8 +154,10 @@ class Recorder:
 
     def _flush(self) -> None:
         if self._n_waiting:
-            self._writer.frames(self._block[: self._n_waiting])
-            self._n_waiting = 0
+            # Between the two lines, an interrupt would make the frames be written twice.
+            with held():
+                self._writer.frames(self._block[: self._n_waiting])
+                self._n_waiting = 0
         self._last_write = time.monotonic()
 
     def _close(self) -> None:
@@ -168,7 +173,7 @@ def recover(path: str | Path) -> None:
         RunError: the file cannot be written, or the run is still going on.
     """
     path = _trajectory_path(path)
-    if not journal_path(path).exists():
+    if not _has_journal(path):
         raise InputError(f"{path}: there is no journal {journal_path(path)} to recover it from")
     writer = JournalWriter.reopen(journal_path(path))
     try:
@@ -193,6 +198,11 @@ def _trajectory_path(path: str | Path) -> Path:
     if path.suffix == journal_path(Path("-")).suffix:
         raise InputError(f"{path}: this is the name of a journal; name its trajectory, {path.with_suffix('')}")
     return path
+
+
+def _has_journal(path: Path) -> bool:
+    with reading(path):
+        return journal_path(path).exists()
 
 
 def _check_target(path: Path, *, replace: bool) -> None:

@@ -27,8 +27,7 @@ class Sink:
         self._fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
         self._position = 0
         self._size = 0
-        # Ctrl-C, too, may arrive while HDF5 is calling, and must not pass through it.
-        self._error: BaseException | None = None
+        self._error: OSError | None = None
 
     def __enter__(self) -> Sink:
         return self
@@ -58,7 +57,7 @@ class Sink:
         if self._error is None:
             try:
                 write_all(self._fd, data, at=self._position)
-            except BaseException as error:
+            except OSError as error:
                 self._error = error
         self._position += len(data)
         self._size = max(self._size, self._position)
@@ -69,7 +68,7 @@ class Sink:
         data = b""
         try:
             data = os.pread(self._fd, size, self._position)
-        except BaseException as error:
+        except OSError as error:
             self._error = self._error or error
         self._position += size
         return data.ljust(size, b"\0")
@@ -79,7 +78,7 @@ class Sink:
         if self._error is None:
             try:
                 os.ftruncate(self._fd, size)
-            except BaseException as error:
+            except OSError as error:
                 self._error = error
         self._size = size
         return size

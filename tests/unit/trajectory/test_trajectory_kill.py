@@ -1,0 +1,96 @@
+"""Real kills: a writer that is shot at any moment loses nothing that it had written."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from sample_run import digest_of, go_on, header, holds, record
+
+from atomsim.trajectory import Recorder, Trajectory, journal_path, recover
+
+N_KILLS = 400 if os.environ.get("ATOMSIM_LONG") else 12
+
+SHOOTING = """
+import json, os, random, signal, sys, time
+from pathlib import Path
+import h5py
+from sample_run import go_on, header
+from atomsim.trajectory import Recorder, recorder
+
+recorder.BLOCK_SECONDS = 0.0
+folder, n_kills = Path(sys.argv[1]), int(sys.argv[2])
+
+def write(path, counter):
+    with Recorder(path, header(400)) as recording:
+        append = recording.append
+        def counted(frame):
+            append(frame)
+            os.write(counter, b".")
+        recording.append = counted
+        go_on(recording)
+
+def start(path):
+    read, counter = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.close(read)
+        write(path, counter)
+        os._exit(0)
+    os.close(counter)
+    return child, read
+
+began = time.monotonic()
+child, read = start(folder / "timed.h5")
+os.waitpid(child, 0)
+whole = time.monotonic() - began
+random.seed(1)
+counts = []
+for i in range(n_kills):
+    child, read = start(folder / f"{i}.h5")
+    time.sleep(random.uniform(0, 1.1 * whole))
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    counts.append(len(os.read(read, 1000)))
+    os.close(read)
+print(json.dumps(counts))
+"""
+
+
+def test_a_killed_writer_loses_nothing(tmp_path: Path) -> None:
+    """A process forks writers and kills each at a random moment of its life, building included."""
+    whole = record(tmp_path / "whole.h5", header(400))
+    shooting = subprocess.run(
+        [sys.executable, "-c", SHOOTING, tmp_path, str(N_KILLS)],
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parent), "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    n_written = json.loads(shooting.stdout)
+    assert len(n_written) == N_KILLS
+    for i, count in enumerate(n_written):
+        path = tmp_path / f"{i}.h5"
+        if not path.exists() and not journal_path(path).exists():
+            assert count == 0
+            continue
+        with Trajectory(path) as trajectory:
+            assert len(trajectory) >= count
+            assert holds(trajectory, list(range(0, 10 * len(trajectory), 10)))
+        _go_on_after_the_kill(path)
+        assert digest_of(path) == digest_of(whole)
+        assert not journal_path(path).exists()
+
+
+def _go_on_after_the_kill(path: Path) -> None:
+    if journal_path(path).exists():
+        with Trajectory(journal_path(path)) as trajectory:
+            is_ended = trajectory.end.kind == "finished"
+        if is_ended:
+            recover(path)
+        else:
+            with Recorder.resume(path) as recording:
+                go_on(recording)

@@ -1,0 +1,137 @@
+"""Reading: a trajectory is an ordinary sequence, finished or not."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_run import TIME_STEP, frame, header, holds, is_same_frame, killed, record
+
+from atomsim.errors import InputError
+from atomsim.trajectory import End, Recorder, Trajectory
+from atomsim.trajectory.document import document
+
+
+@pytest.fixture(params=["finished", "compressed", "journal"])
+def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    out = tmp_path / "out.h5"
+    if request.param == "journal":
+        killed(out, header(40), stop_after=40)
+        return out
+    return record(out, header(40, compress=request.param == "compressed"))
+
+
+def test_a_trajectory_is_a_sequence_of_frames(path: Path) -> None:
+    with Trajectory(path) as trajectory:
+        assert len(trajectory) == 5
+        assert is_same_frame(trajectory[0], frame(0))
+        assert is_same_frame(trajectory[-1], frame(40))
+        assert [one.round_index for one in trajectory] == [0, 10, 20, 30, 40]
+        assert [one.round_index for one in reversed(trajectory)] == [40, 30, 20, 10, 0]
+        for index in (5, -6):
+            with pytest.raises(IndexError):
+                trajectory[index]
+
+
+@pytest.mark.parametrize(
+    "cut", [slice(None), slice(1, None, 2), slice(None, None, -1), slice(-2, None), slice(3, 1), slice(0, 99)]
+)
+def test_slices_are_those_of_a_list(path: Path, cut: slice) -> None:
+    with Trajectory(path) as trajectory:
+        some = trajectory[cut]
+        assert [one.round_index for one in some] == [0, 10, 20, 30, 40][cut]
+        assert len(some) == len([0, 10, 20, 30, 40][cut])
+        assert [one.round_index for one in some[::-1]] == [0, 10, 20, 30, 40][cut][::-1]
+
+
+def test_what_it_says_besides_its_frames(path: Path) -> None:
+    with Trajectory(str(path)) as trajectory:
+        assert document(trajectory.header) == document(header(40, compress=trajectory.header.compress))
+        assert trajectory.header.bond.tolist() == [[0, 1], [4, 5]]
+        assert trajectory.header.bond_table.tolist() == [2, 3]
+        assert trajectory.header.groups == header().groups
+        assert trajectory.rounds.tolist() == [0, 10, 20, 30, 40]
+        assert trajectory.time.tolist() == [i * TIME_STEP for i in (0, 10, 20, 30, 40)]
+        assert trajectory.digests == [frame(i).digest for i in (0, 10, 20, 30, 40)]
+        assert trajectory.lost_bytes == 0
+        assert trajectory.has_journal == trajectory.from_journal == (not path.exists())
+        trajectory.verify()
+
+
+def test_observables_are_arrays_by_name(path: Path) -> None:
+    expected = [frame(i).observables for i in (0, 10, 20, 30, 40)]
+    with Trajectory(path) as trajectory:
+        assert list(trajectory.observables) == list(expected[0].__slots__)
+        for name, values in trajectory.observables.items():
+            assert np.array_equal(values, [getattr(one, name) for one in expected])
+
+
+def test_frames_stay_after_the_file_is_closed_and_may_be_changed(path: Path) -> None:
+    with Trajectory(path) as trajectory:
+        one, again = trajectory[1], trajectory[1]
+        one.position[:] = 0
+        assert is_same_frame(trajectory[1], again)
+    assert is_same_frame(again, frame(10))
+
+
+def test_the_journal_can_be_named_itself(tmp_path: Path) -> None:
+    journal = killed(tmp_path / "out.h5", header(40), stop_after=20)
+    with Trajectory(journal) as trajectory:
+        assert holds(trajectory, [0, 10, 20])
+        assert trajectory.from_journal
+
+
+def test_a_run_can_be_read_while_it_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "out.h5"
+    with Recorder(path, header()) as recorder:
+        recorder.append(frame(0))
+        with Trajectory(path) as trajectory:
+            recorder.append(frame(10))
+            assert holds(trajectory, [0])
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_for_runs_that_blew_up(tmp_path: Path, value: float) -> None:
+    path = tmp_path / "out.h5"
+    bad = frame(10)
+    bad.velocity[3, 1] = value
+    bad = type(bad)(10, bad.time, bad.position, bad.velocity, _digest(bad), bad.observables)
+    for end in (End("blew up", "atom 3 is gone"), End("finished")):
+        with Recorder(path, header(), replace=True) as recorder:
+            recorder.append(frame(0))
+            recorder.append(bad)
+            recorder.finish(end)
+        with Trajectory(path) as trajectory:
+            assert trajectory.end == end
+            if end.kind == "blew up":
+                assert is_same_frame(trajectory[1], bad)
+                continue
+            with pytest.raises(InputError) as caught:
+                trajectory.verify()
+            assert str(caught.value) == f"{path}: damaged: the state at round 10 is not finite"
+
+
+def _digest(one: object) -> str:
+    from atomsim.core.digest import state_digest
+
+    return state_digest(one.position, one.velocity)
+
+
+def test_what_cannot_be_a_trajectory(tmp_path: Path) -> None:
+    pipe, scene, empty = tmp_path / "pipe", tmp_path / "scene.yaml", tmp_path / "empty.h5"
+    os.mkfifo(pipe)
+    scene.write_text("atomsim: 1\n")
+    empty.touch()
+    for path, message in {
+        tmp_path / "missing.h5": "no such file",
+        tmp_path / ("x" * 300): "File name too long",
+        tmp_path: "this is a folder, not a trajectory",
+        pipe: "this is not a regular file",
+        scene: "not a trajectory of atomsim",
+        empty: "not a trajectory of atomsim",
+    }.items():
+        with pytest.raises(InputError) as caught:
+            Trajectory(path)
+        assert str(caught.value) == f"{path}: {message}"
