@@ -1,4 +1,4 @@
-"""Pictures of trajectories: unit balls with true depth, frames side by side in a strip; knows no scenes."""
+"""Pictures of trajectories: what other parts of atomsim may ask for; loads no matplotlib before a strip is made."""
 
 from atomsim.render.camera import View
 from atomsim.render.strip import Row, atom_color, compose, frames_to

@@ -25,6 +25,9 @@ _SKY_LIGHT, _N_SKY, _SKY_DEPTH = 0.65, 12, 1.15
 _MAP_SIZE, _MAP_FRAGMENTS = 320, 1 << 19
 """Texels along the longer side of a shadow map, and how many fragments it may cost; many balls get larger texels."""
 
+_FINEST, _COARSEST = 0.05, 1.0
+"""Bounds of a texel [length]: more would not show, and less would miss balls."""
+
 _CLEARANCE = 1e-3
 """A ball shades only what lies at least this far behind it [length], or rounding would speckle touching balls."""
 
@@ -89,7 +92,7 @@ class Beam:
         return cls(right, up, towards, strength, ball, grid, nearest_ball(ball, 0.0, grid).reshape(-1))
 
     def on(self, point: Floats, normal: Floats) -> Floats:
-        """Return the light of this beam on points of the balls that it was made for.
+        """Return the light of this beam on points of balls; beyond the map there are no shadows.
 
         Args:
             point: places in camera coordinates [length], (3, m) float64.
@@ -108,8 +111,8 @@ class Beam:
         computed exactly, so no slope of a ball shades itself however coarse the map is.
         """
         x, y, z = (_along(point, axis) for axis in (self.right, self.up, self.back))
-        column = ((x - self.grid.left) / self.grid.pixel).astype(np.int64)
-        row = ((self.grid.top - y) / self.grid.pixel).astype(np.int64)
+        column = np.clip((x - self.grid.left) / self.grid.pixel, 0, self.grid.n_columns - 1).astype(np.int64)
+        row = np.clip((self.grid.top - y) / self.grid.pixel, 0, self.grid.n_rows - 1).astype(np.int64)
         struck = self.struck.take(row * self.grid.n_columns + column)
         offset_x, offset_y = x - self.ball[0].take(struck), y - self.ball[1].take(struck)
         inside = 1.0 - (offset_x * offset_x + offset_y * offset_y)
@@ -122,19 +125,19 @@ def beams_on(seen: Floats, lit: Indices, vertical: Vector) -> list[Beam]:
 
     Args:
         seen: centres of the unit balls in camera coordinates [length], (3, n) float64.
-        lit: the balls whose surface will be asked about, at least one, (m,) int64.
+        lit: the balls that show their shadows, at least one, (m,) int64.
         vertical: the direction that is up in the scene, in camera coordinates.
     """
     return [Beam.of(from_viewer(towards, vertical), strength, seen, lit) for towards, strength in _beams()]
 
 
 def _grid_around(x: Floats, y: Floats, n_casting: int) -> Grid:
-    """Return a shadow map around unit balls; the rim keeps rounding from pushing a point off the map."""
+    """Return a shadow map around unit balls at x and y, with a rim for rounding."""
     rim = 1.01
     left, right = float(x.min()) - rim, float(x.max()) + rim
     bottom, top = float(y.min()) - rim, float(y.max()) + rim
-    affordable = min(2.0 * math.sqrt(n_casting / _MAP_FRAGMENTS), 1.0)
-    texel = max((right - left) / _MAP_SIZE, (top - bottom) / _MAP_SIZE, affordable)
+    affordable = min(2.0 * math.sqrt(n_casting / _MAP_FRAGMENTS), _COARSEST)
+    texel = max((right - left) / _MAP_SIZE, (top - bottom) / _MAP_SIZE, affordable, _FINEST)
     return Grid(left, top, texel, int((right - left) / texel) + 1, int((top - bottom) / texel) + 1)
 
 

@@ -59,12 +59,21 @@ def draw(
     n_columns, n_rows = SUPERSAMPLING * size[0], SUPERSAMPLING * size[1]
     pixel = camera.width / n_columns
     grid = Grid(-camera.width / 2, n_rows * pixel / 2, pixel, n_columns, n_rows)
-    visible = Coverage.of(seen, camera.convergence, grid).ball
-    vertical = camera.direction(camera.vertical)
-    beams = beams_on(seen, visible, vertical) if len(visible) else []
+    lit = _lit(seen, camera, grid)
+    beams = beams_on(seen, lit, camera.direction(camera.vertical)) if len(lit) else []
     scene = _Lit(seen, color[drawable] * color[drawable], camera, beams, np.square(np.array(background)))
     band = SUPERSAMPLING * max(_BAND // (n_columns * SUPERSAMPLING), 1)
     return np.concatenate([scene.paint(grid.band(first, band)) for first in range(0, n_rows, band)])
+
+
+def _lit(seen: Floats, camera: Camera, grid: Grid) -> Indices:
+    """Return the balls that have to show their shadows: those in the picture, but not specks far away.
+
+    The shadow maps cover these balls, so a speck in the distance would make them too coarse for all others.
+    """
+    visible = Coverage.of(seen, camera.convergence, grid).ball
+    near = visible[(np.abs(seen.take(visible, axis=1)) <= 2.0 * camera.width).all(axis=0)]
+    return near if len(near) else visible
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -80,11 +80,12 @@ class Row:
         lost = [int((~is_drawable(frame.position)).sum()) for frame in self.frames]
         return [f"{n_lost} {'atom' if n_lost == 1 else 'atoms'} not drawable" if n_lost else "" for n_lost in lost]
 
-    def pictures(self, size: tuple[int, int]) -> list[Pixels]:
-        """Draw the frames, each (height, width, 3) uint8."""
+    def pictures(self, size: tuple[int, int]) -> Iterator[Pixels]:
+        """Draw one frame after the other, each (height, width, 3) uint8; only one is held at a time."""
         camera = fit(self.view, [frame.position for frame in self.frames], size, self.start)
         background = _rgb(self.background)
-        return [draw(frame.position, self.color, camera, size, background) for frame in self.frames]
+        for frame in self.frames:
+            yield draw(frame.position, self.color, camera, size, background)
 
 
 def atom_color(groups: Sequence[GroupSpan]) -> Floats:

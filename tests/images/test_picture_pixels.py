@@ -99,6 +99,14 @@ def test_a_ball_above_a_surface_throws_a_shadow_that_softens_with_height():
     assert darkest(2.5) > darkest(9.0) > 20
 
 
+def test_a_speck_far_away_takes_no_shadow_from_the_others():
+    stack = np.array([[0.0, 0.0, 2.2], [0.2, 0.3, 0.0], [0.5, 1.5, 0.0], [1.0, 3.0, -1.0]])
+    above = View(0.0, 90.0)
+    plain, with_speck = picture(stack, view=above), picture([*stack, [30.0, 30.0, -600.0]], view=above)
+    assert (plain != with_speck).any()
+    np.testing.assert_array_equal(with_speck[is_ball(plain)], plain[is_ball(plain)])
+
+
 def test_atoms_without_a_place_are_left_out():
     good = [[0.0, 0.0, 0.0], [0.0, 1.0, 1.0]]
     bad = [[np.nan, 0.0, 0.0], *good, [0.0, np.inf, 0.0], [0.0, 0.0, -1e300]]

@@ -8,7 +8,7 @@ import pytest
 from atomsim.render import trace
 from atomsim.render.trace import NOTHING, Coverage, Grid, nearest_ball, normals
 
-GRID = Grid(-6.0, 4.5, 0.2, 60, 45)
+GRID = Grid(-6.0, 4.5, 0.3, 40, 30)
 
 
 def cast(seen, convergence, x, y):
@@ -32,7 +32,7 @@ def cast(seen, convergence, x, y):
 def test_every_pixel_shows_the_nearest_ball_and_its_normal(convergence):
     seen = np.random.default_rng(4).uniform(-5, 5, size=(3, 40))
     owner = nearest_ball(seen, convergence, GRID)
-    assert owner.shape == (45, 60)
+    assert owner.shape == (30, 40)
     assert 0.2 < (owner == NOTHING).mean() < 0.8
     for row, y in enumerate(GRID.y()):
         for column, x in enumerate(GRID.x()):
@@ -55,14 +55,14 @@ def test_the_size_of_a_batch_does_not_matter(monkeypatch):
     seen = np.random.default_rng(5).uniform(-5, 5, size=(3, 60))
     whole = nearest_ball(seen, 0.02, GRID)
     monkeypatch.setattr(trace, "_BATCH", 100)
-    assert len(list(Coverage.of(seen, 0.02, GRID).fragments())) > 30
+    assert len(list(Coverage.of(seen, 0.02, GRID).fragments())) > 10
     assert (nearest_ball(seen, 0.02, GRID) == whole).all()
 
 
 def test_bands_make_up_the_grid():
     seen = np.random.default_rng(6).uniform(-5, 5, size=(3, 60))
-    bands = [GRID.band(first, 10) for first in range(0, 45, 10)]
-    assert [band.n_rows for band in bands] == [10, 10, 10, 10, 5]
+    bands = [GRID.band(first, 8) for first in range(0, 30, 8)]
+    assert [band.n_rows for band in bands] == [8, 8, 8, 6]
     parts = [nearest_ball(seen, 0.02, band) for band in bands]
     assert (np.concatenate(parts) == nearest_ball(seen, 0.02, GRID)).all()
 
