@@ -1,1 +1,83 @@
-"""atomsim."""
+"""atomsim: previsualization in robotics with unit balls that are bound and collide.
+
+In a notebook:
+
+    loaded = atomsim.load("scenes/rods.yaml")            # a scene and where it came from
+    model, state = atomsim.compile(loaded)               # flat force tables and the first state
+    for frame in atomsim.simulate(model, state, 1000):   # frame by frame
+        ...
+    atomsim.run(loaded, "out.h5")                        # or record a whole run
+    with atomsim.Trajectory("out.h5") as trajectory:     # a sequence of frames
+        trajectory[-1].position
+    atomsim.render("out.h5", "out.png")                  # the strip
+
+Names are loaded when they are first used, so that `import atomsim` costs nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from atomsim.core.model import Frame, Model, State
+    from atomsim.core.simulate import simulate
+    from atomsim.errors import AtomsimError, BlowUpError, InputError, RunError, SceneError
+    from atomsim.pictures import render, render_frames
+    from atomsim.record import resume, run
+    from atomsim.scene.loader import LoadedScene, load, loads
+    from atomsim.trajectory import Trajectory
+
+_HOMES = {
+    "AtomsimError": "atomsim.errors",
+    "BlowUpError": "atomsim.errors",
+    "Frame": "atomsim.core.model",
+    "InputError": "atomsim.errors",
+    "LoadedScene": "atomsim.scene.loader",
+    "Model": "atomsim.core.model",
+    "RunError": "atomsim.errors",
+    "SceneError": "atomsim.errors",
+    "State": "atomsim.core.model",
+    "Trajectory": "atomsim.trajectory",
+    "load": "atomsim.scene.loader",
+    "loads": "atomsim.scene.loader",
+    "render": "atomsim.pictures",
+    "render_frames": "atomsim.pictures",
+    "resume": "atomsim.record",
+    "run": "atomsim.record",
+    "simulate": "atomsim.core.simulate",
+}
+
+__all__ = [
+    "AtomsimError",
+    "BlowUpError",
+    "Frame",
+    "InputError",
+    "LoadedScene",
+    "Model",
+    "RunError",
+    "SceneError",
+    "State",
+    "Trajectory",
+    "compile",
+    "load",
+    "loads",
+    "render",
+    "render_frames",
+    "resume",
+    "run",
+    "simulate",
+]
+
+
+def compile(loaded: LoadedScene) -> tuple[Model, State]:
+    """Compile a loaded scene to flat force tables and its first state; see `atomsim.compiler.compile_scene`."""
+    from atomsim.compiler import compile_scene
+
+    return compile_scene(loaded.scene, loaded.source)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'atomsim' has no attribute '{name}'")
+    return getattr(import_module(_HOMES[name]), name)

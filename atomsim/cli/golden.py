@@ -48,7 +48,9 @@ def record(
             last_round, digest = list(made.digests.items())[-1]
             write_golden(made, path)
             with (into / LOG).open("a") as log:
-                log.write(f"- {scene.stem}: round {last_round} is {digest[:16]}…: {reason.strip() or 'first recording'}\n")
+                log.write(
+                    f"- {scene.stem}: round {last_round} is {digest[:16]}…: {reason.strip() or 'first recording'}\n"
+                )
             print(f"{path}: {len(made.digests)} digests, {len(made.frames)} frames")
     except OSError as error:
         raise RunError(f"{into}: cannot be written: {error.strerror}") from None

@@ -13,25 +13,24 @@ class Progress:
     """Reports rounds per second and time left on a terminal, and nothing where nobody watches.
 
     Args:
-        begin: the round that the run goes on from.
-        rounds: the round it goes to.
         is_shown: whether to write at all; by default where standard error is a terminal.
     """
 
-    def __init__(self, begin: int, rounds: int, is_shown: bool | None = None) -> None:
-        self._begin = begin
-        self._rounds = rounds
+    def __init__(self, is_shown: bool | None = None) -> None:
+        self._begin: int | None = None
         self._is_shown = sys.stderr.isatty() if is_shown is None else is_shown
         self._started = time.monotonic()
         self._written = 0.0
         self._width = 0
 
-    def report(self, round_index: int) -> None:
-        """Say which round has been reached."""
+    def report(self, round_index: int, rounds: int) -> None:
+        """Say which round of how many has been reached; the first call tells where the run begins."""
         now = time.monotonic()
+        if self._begin is None:
+            self._begin, self._started = round_index, now
         if self._is_shown and now - self._written >= REFRESH_SECONDS:
             self._written = now
-            self._write(progress_line(self._begin, round_index, self._rounds, now - self._started))
+            self._write(progress_line(self._begin, round_index, rounds, now - self._started))
 
     def clear(self) -> None:
         """Take the line away."""

@@ -1,22 +1,13 @@
-"""`atomsim render`: trajectories become a picture; knows which rounds to show, not how they are drawn."""
+"""`atomsim render`: what users type to get pictures, read and handed on."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import Annotated, TypeVar
 
 import typer
 
-if TYPE_CHECKING:
-    from atomsim.render import Row
-    from atomsim.scene.language import Render
-    from atomsim.trajectory import Trajectory
-
 Part = TypeVar("Part", int, float)
-
-N_FRAMES = 6
-"""How many rounds a strip shows where nobody chose."""
 
 
 def render(
@@ -46,83 +37,22 @@ def render(
 
     atomsim render rods.h5 rod-thread.h5 threads.h5 -o figure1.png
     """
-    from contextlib import ExitStack
-
+    from atomsim import pictures
     from atomsim.errors import InputError
-    from atomsim.render import compose, frames_to
-    from atomsim.trajectory import Trajectory
+    from atomsim.render.files import is_our_picture
 
     wanted = None if rounds is None else _rounds(rounds)
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
+    if frames is not None:
+        written = pictures.render_frames(trajectories, frames, rounds=wanted, camera=angles, size=pixels)
+        print(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
+        return
     picture = trajectories[0].with_suffix(".png") if output is None else output
-    if frames is None and picture.exists() and not force:
+    if picture.exists() and not force and not is_our_picture(picture):
         raise InputError(f"{picture} exists and atomsim did not draw it; add --force to replace it")
-    with ExitStack() as opened:
-        rows = []
-        for path in trajectories:
-            trajectory = opened.enter_context(Trajectory(path))
-            if trajectory.from_journal:
-                typer.echo(f"{path}: read from its journal; to make the file: atomsim recover {path}", err=True)
-            rows.append(_row(trajectory, wanted, angles, every=frames is not None))
-        if frames is None:
-            compose(rows, picture, pixels)
-            print(picture)
-        else:
-            written = frames_to(rows, frames, pixels)
-            print(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
-
-
-def _row(trajectory: Trajectory, wanted: list[int] | None, angles: tuple[float, float] | None, *, every: bool) -> Row:
-    """Choose the frames of one trajectory and from where they are seen."""
-    from atomsim.render import Row, View, atom_color
-    from atomsim.scene import loads
-
-    header = trajectory.header
-    chosen = loads(header.scene, header.scene_name).scene.render
-    if wanted is None and every:
-        asked = tuple(trajectory.rounds.tolist())
-    else:
-        asked = _asked(trajectory, wanted, chosen)
-    view = View(**chosen.camera.model_dump())
-    if angles is not None:
-        view = replace(view, azimuth=angles[0], elevation=angles[1])
-    title = header.title or header.scene_name
-    if trajectory.end.kind == "blew up":
-        title += f" — blew up after round {trajectory.rounds[-1]}"
-    return Row(
-        title=title,
-        frames=tuple(trajectory[_nearest(trajectory, round_index)] for round_index in asked),
-        color=atom_color(header.groups),
-        view=view,
-        background=chosen.background,
-        asked=asked,
-        start=trajectory[0].position,
-    )
-
-
-def _asked(trajectory: Trajectory, wanted: list[int] | None, chosen: Render) -> tuple[int, ...]:
-    """Return the rounds to show: as asked for, else as the scene says as far as the run went, else evenly spread."""
-    from atomsim.errors import InputError
-
-    last = int(trajectory.rounds[-1])
-    if wanted is not None:
-        too_late = [round_index for round_index in wanted if round_index > last]
-        if too_late:
-            raise InputError(f"{trajectory.path}: there is no round {too_late[0]}; it ends at round {last}")
-        return tuple(wanted)
-    if chosen.rounds is not None:
-        reached = tuple(round_index for round_index in chosen.rounds if round_index <= last)
-        return reached if len(reached) == len(chosen.rounds) else (*reached, last)
-    recorded = trajectory.rounds
-    places = sorted({place * (len(recorded) - 1) // (N_FRAMES - 1) for place in range(N_FRAMES)})
-    return tuple(int(recorded[place]) for place in places)
-
-
-def _nearest(trajectory: Trajectory, round_index: int) -> int:
-    """Return the index of the frame recorded nearest to a round, the earlier of two."""
-    distance = abs(trajectory.rounds - round_index)
-    return int(distance.argmin())
+    pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels)
+    print(picture)
 
 
 def _rounds(text: str) -> list[int]:

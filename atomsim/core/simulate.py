@@ -47,7 +47,7 @@ def simulate(
         rounds: the round to run to.
         record_every: rounds between two frames; frames fall on its multiples.
         make_stepper: the backend.
-        report: called several times a second with the round reached, also between frames; what it raises ends the run.
+        report: called at the start and then several times a second with the round reached; what it raises ends the run.
 
     Yields:
         Frames in order of rounds.
@@ -57,6 +57,8 @@ def simulate(
     """
     observer = Observer(model)
     stepper = make_stepper(model, state)
+    if report is not None:
+        report(state.round_index)
     while True:
         yield frame_of(model, state, observer)
         if state.round_index >= rounds:

@@ -1,0 +1,53 @@
+# Two commands are all a fresh machine needs: `make demo` and `make test`.
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+SCENES := $(sort $(wildcard scenes/*.yaml))
+
+.PHONY: help demo test check format tests golden figures reference bench torture clean
+
+help: ## list the targets
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+demo: $(VENV)/installed ## install, run scenes/rods.yaml, draw the strip
+	$(BIN)/atomsim run scenes/rods.yaml -o rods.h5 --force
+	$(BIN)/atomsim render rods.h5
+	@echo "Now look at rods.png."
+
+test: check tests golden ## everything that must hold
+
+check: $(VENV)/installed-dev ## format, lint, types, layers
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+
+tests: $(VENV)/installed-dev ## the test suite
+	$(BIN)/pytest --numprocesses 2 --dist worksteal
+
+golden: $(VENV)/installed-dev ## every scene against its golden trajectory, bit for bit
+	$(BIN)/atomsim golden check $(SCENES) --into tests/golden
+
+format: $(VENV)/installed-dev ## put the code into its format
+	$(BIN)/ruff format
+	$(BIN)/ruff check --fix
+
+figures: $(VENV)/installed ## draw the pictures of the docs again
+	$(BIN)/python docs/make_figures.py
+
+reference: $(VENV)/installed ## write the generated pages of the docs and the JSON Schema again
+	$(BIN)/python docs/make_reference.py
+
+clean: ## remove what the other targets made
+	rm -rf $(VENV) rods.h5 rods.png
+
+$(VENV)/installed: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(VENV)/installed-dev: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $(VENV)/installed $@

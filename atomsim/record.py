@@ -1,0 +1,129 @@
+"""From a scene, or from where a trajectory stopped, to a recorded trajectory; knows no terminal."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+from atomsim.compiler import compile_scene
+from atomsim.core.model import Model, State
+from atomsim.core.simulate import simulate
+from atomsim.errors import BlowUpError
+from atomsim.scene import LoadedScene, loads
+from atomsim.trajectory import End, Header, Recorder
+
+Report: TypeAlias = Callable[[int, int], None]
+"""Called with the round reached and the round to reach, at the start and then several times a second."""
+
+
+class StopWishedError(Exception):
+    """Raised by a report to end a run between two rounds; the frames so far are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a run.
+
+    Attributes:
+        path: the trajectory.
+        rounds: the round that was to be reached.
+        first_round: the round it began or went on from.
+        last_round: the round of the last frame.
+        digest: the state digest of the last frame.
+        end: whether it finished or was interrupted.
+    """
+
+    path: Path
+    rounds: int
+    first_round: int
+    last_round: int
+    digest: str
+    end: End
+
+
+def run(
+    scene: LoadedScene,
+    path: str | os.PathLike[str],
+    *,
+    replace: bool = False,
+    compress: bool = False,
+    report: Report | None = None,
+) -> Outcome:
+    """Simulate a loaded scene and record its trajectory.
+
+    Args:
+        scene: the scene, as `load` returns it.
+        path: the trajectory to write.
+        replace: whether an older trajectory of that name may go.
+        compress: whether to write a smaller file, slowly.
+        report: hears how far the run is.
+
+    Raises:
+        SceneError: the scene does not compile.
+        InputError: the trajectory exists, or cannot be there.
+        RunError: it cannot be written.
+        BlowUpError: the numbers left the finite; the frames before are in the trajectory.
+    """
+    model, state = compile_scene(scene.scene, scene.source)
+    header = Header.of(
+        model,
+        scene_text=scene.source.text,
+        scene_name=scene.source.name,
+        overrides=scene.source.overrides,
+        rounds=scene.scene.rounds,
+        record_every=scene.scene.record_every,
+        compress=compress,
+    )
+    with Recorder(Path(path), header, replace=replace) as recorder:
+        return _record(recorder, model, state, report)
+
+
+def resume(path: str | os.PathLike[str], *, rounds: int | None = None, report: Report | None = None) -> Outcome:
+    """Go on with a trajectory from its last frame; the scene is inside it.
+
+    The finished file is the one that an uninterrupted run would have written, byte for byte.
+
+    Args:
+        path: the trajectory, finished or stopped.
+        rounds: total rounds to do; as planned before by default.
+        report: hears how far the run is.
+
+    Raises:
+        InputError: there is no such trajectory, it is damaged, or it has done these rounds already.
+        RunError: it cannot be written, or another run writes it.
+        BlowUpError: the numbers left the finite; the frames before are in the trajectory.
+    """
+    with Recorder.resume(Path(path), rounds=rounds) as recorder:
+        loaded = loads(recorder.header.scene, recorder.header.scene_name)
+        model, first = compile_scene(loaded.scene, loaded.source)
+        return _record(recorder, model, recorder.state or first, report)
+
+
+def _record(recorder: Recorder, model: Model, state: State, report: Report | None) -> Outcome:
+    """Compute and record the frames that are due, and finish the file, however the run ends."""
+    header, first_round = recorder.header, state.round_index
+    is_recorded = recorder.state is not None  # a resumed run begins with a frame that is there already
+    end, blow_up = End("finished"), None
+    digest = ""
+
+    def report_round(round_index: int) -> None:
+        if report is not None:
+            report(round_index, header.rounds)
+
+    try:
+        for frame in simulate(model, state, header.rounds, header.record_every, report=report_round):
+            if not is_recorded:
+                recorder.append(frame)
+            is_recorded = False
+            state, digest = frame.state, frame.digest
+    except StopWishedError:
+        end = End("interrupted")
+    except BlowUpError as error:
+        end, blow_up = End("blew up", str(error)), error
+    recorder.finish(end)
+    if blow_up is not None:
+        raise BlowUpError(f"{blow_up}\n{recorder.path} keeps the frames up to round {state.round_index}")
+    return Outcome(recorder.path, header.rounds, first_round, state.round_index, digest, end)
