@@ -1,4 +1,4 @@
-"""Files that appear whole under their name or not at all; knows nothing of what is in them."""
+"""Files that appear whole under their name or not at all; knows nothing of what is in them but our mark."""
 
 from __future__ import annotations
 
@@ -7,6 +7,17 @@ from contextlib import suppress
 from pathlib import Path
 
 from atomsim.errors import InputError, RunError
+
+MARK = "drawn by atomsim"
+"""Stands as a comment in every picture of ours."""
+
+
+def is_our_picture(path: Path) -> bool:
+    """Tell whether a file is a picture that atomsim drew; one that cannot be read is not."""
+    try:
+        return MARK.encode() in path.read_bytes()
+    except OSError:
+        return False
 
 
 def check_target(path: Path, extensions: tuple[str, ...]) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from atomsim.core.model import Floats, Frame, GroupSpan
 from atomsim.errors import InputError, RunError
 from atomsim.render.camera import View
-from atomsim.render.files import check_target, write_whole
+from atomsim.render.files import MARK, check_target, write_whole
 from atomsim.render.framing import fit, is_drawable
 from atomsim.render.layout import LARGE, Layout, frame_size
 from atomsim.render.picture import Pixels, draw
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FORMATS: dict[str, dict[str, Any]] = {
-    ".png": {"metadata": {"Software": None}},
-    ".jpg": {"pil_kwargs": {"quality": 92}},
-    ".jpeg": {"pil_kwargs": {"quality": 92}},
-    ".webp": {"pil_kwargs": {"lossless": True}},
-    ".pdf": {"metadata": {"Creator": None, "Producer": None, "CreationDate": None}},
-    ".svg": {"metadata": {"Date": None}},
+    ".png": {"metadata": {"Software": None, "Comment": MARK}},
+    ".jpg": {"pil_kwargs": {"quality": 92, "comment": MARK.encode()}},
+    ".jpeg": {"pil_kwargs": {"quality": 92, "comment": MARK.encode()}},
+    ".webp": {"pil_kwargs": {"lossless": True, "xmp": MARK.encode()}},
+    ".pdf": {"metadata": {"Creator": MARK, "Producer": None, "CreationDate": None}},
+    ".svg": {"metadata": {"Creator": MARK, "Date": None}},
 }
-"""What a strip can be written as, and how to keep the time of writing and the versions of programs out of it."""
+"""What a strip can be written as, with our mark, and without the time of writing and the versions of programs."""
 
 _DPI = 64
 """A power of two, so that no size in pixels is lost on the way through inches."""
@@ -178,10 +178,12 @@ def _rgb(color: str) -> tuple[float, float, float]:
 
 
 def _png(picture: Pixels) -> bytes:
-    from PIL import Image
+    from PIL import Image, PngImagePlugin
 
+    comments = PngImagePlugin.PngInfo()
+    comments.add_text("Comment", MARK)
     content = io.BytesIO()
-    Image.fromarray(picture).save(content, "PNG")
+    Image.fromarray(picture).save(content, "PNG", pnginfo=comments)
     return content.getvalue()
 
 

@@ -15,6 +15,7 @@ from PIL import Image
 from atomsim.core.model import Frame, GroupSpan, Observables, Origin
 from atomsim.errors import InputError
 from atomsim.render.camera import View
+from atomsim.render.files import is_our_picture
 from atomsim.render.layout import Layout
 from atomsim.render.strip import Row, atom_color, compose, frames_to
 
@@ -73,6 +74,17 @@ def test_the_same_rows_give_the_same_bytes_whatever_the_users_settings(tmp_path)
         ):
             compose([row()], other, SIZE)
         assert one.read_bytes() == other.read_bytes()
+
+
+def test_pictures_of_ours_are_known_in_every_format(tmp_path):
+    out = [tmp_path / f"strip.{extension}" for extension in ("png", "jpg", "jpeg", "webp", "pdf", "svg")]
+    for path in out:
+        compose([row()], path, SIZE)
+    assert all(is_our_picture(path) for path in [*out, *frames_to([row()], tmp_path, SIZE)])
+    Image.new("RGB", (20, 20)).save(tmp_path / "foreign.png")
+    assert not is_our_picture(tmp_path / "foreign.png")
+    assert not is_our_picture(tmp_path / "missing.png")
+    assert not is_our_picture(tmp_path)
 
 
 def test_a_png_holds_no_version_of_any_program(tmp_path):
