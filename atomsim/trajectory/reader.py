@@ -75,15 +75,16 @@ class Trajectory(Sequence[Frame]):
         lost_bytes: how much at the end of a journal is torn or damaged, and left out.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
         journal = journal_path(self.path)
         with reading(self.path):
             self.has_journal = journal.exists()
-            found = journal if self.has_journal and not self.path.exists() else self.path
-            if not found.exists():
+            self._found = journal if self.has_journal and not self.path.exists() else self.path
+            if not self._found.exists():
                 raise InputError(f"{self.path}: no such file")
-            self._source: _Source = self._opened(found)
+        with reading(self._found):
+            self._source: _Source = self._opened(self._found)
         self.header = self._source.header
         self.end = self._source.end
 
@@ -159,7 +160,7 @@ class Trajectory(Sequence[Frame]):
             pass
 
     def _frame(self, index: int) -> Frame:
-        with reading(self.path):
+        with reading(self._found):
             position, velocity = self._source.state(index)
             frame = frame_of(self._source.series[index], position, velocity, self.header.time_step)
             is_finite = np.isfinite(position).all() and np.isfinite(velocity).all()

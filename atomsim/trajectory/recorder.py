@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import time
 from dataclasses import replace as with_changes
 from pathlib import Path
@@ -47,7 +48,7 @@ class Recorder:
         state: where a resumed run goes on; None for the beginning of the scene.
     """
 
-    def __init__(self, path: str | Path, header: Header, *, replace: bool = False) -> None:
+    def __init__(self, path: str | os.PathLike[str], header: Header, *, replace: bool = False) -> None:
         path = _trajectory_path(path)
         with reading(path):
             _check_target(path, replace=replace)
@@ -61,7 +62,7 @@ class Recorder:
         self._set_up(path, header, writer, None)
 
     @classmethod
-    def resume(cls, path: str | Path, *, rounds: int | None = None) -> Recorder:
+    def resume(cls, path: str | os.PathLike[str], *, rounds: int | None = None) -> Recorder:
         """Go on with a run that was stopped, from its last frame, `state`.
 
         The finished file will have the very bytes that a run without a stop would have given it. So the last frame
@@ -81,7 +82,7 @@ class Recorder:
             _turn_back(path, rounds)
         writer = JournalWriter.reopen(journal_path(path))
         try:
-            with reading(path), contextlib.closing(writer.read()) as journal:
+            with reading(writer.path), contextlib.closing(writer.read()) as journal:
                 state = _last_state(journal)
                 header = with_changes(journal.header, rounds=journal.header.rounds if rounds is None else rounds)
                 if state is not None and state.round_index > header.rounds:
@@ -165,7 +166,7 @@ class Recorder:
         self._is_open = False
 
 
-def recover(path: str | Path) -> None:
+def recover(path: str | os.PathLike[str]) -> None:
     """Build the finished file from the journal that a killed run left, and remove the journal.
 
     Raises:
@@ -187,13 +188,13 @@ def _build(writer: JournalWriter, path: Path) -> None:
     # Deferred because HDF5 takes longer to import than a small scene to run.
     from atomsim.trajectory.build import build
 
-    with reading(path):
+    with reading(writer.path):
         journal = writer.read()
     with contextlib.closing(journal):
         build(journal, path)
 
 
-def _trajectory_path(path: str | Path) -> Path:
+def _trajectory_path(path: str | os.PathLike[str]) -> Path:
     path = Path(path)
     if path.suffix == journal_path(Path("-")).suffix:
         raise InputError(f"{path}: this is the name of a journal; name its trajectory, {path.with_suffix('')}")

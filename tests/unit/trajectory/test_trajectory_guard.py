@@ -60,7 +60,7 @@ def test_a_mutated_file_gives_the_right_frames_or_one_line(tmp_path: Path, kind:
                 assert holds(trajectory, kept), seed
         except InputError as error:
             n_refused += 1
-            _check_one_line(error, path)
+            _check_one_line(error, source)
     assert N_MUTATIONS // 10 < n_refused < N_MUTATIONS
 
 
