@@ -13,11 +13,12 @@ from atomsim.scene.css_colors import CSS_COLORS
 from atomsim.scene.field_docs import declaration_at, descriptions, discriminator, words_in
 from atomsim.scene.overrides import is_setting
 from atomsim.scene.scalars import resolve
+from atomsim.scene.schema import field_docs
 from atomsim.scene.source import Path, Source
 from atomsim.scene.wording import either, meant, readable, shown, suggestion
 
-_TAGGED_SECTIONS = ("groups", "bonds", "forces")
-"""Sections below whose names pydantic puts the word that chose the declaration: (groups, ring, *ring*, count)."""
+_TAGGED_SECTIONS = {"groups": "shape", "bonds": "rule", "forces": "kind"}
+"""Sections whose declarations are chosen by a key; pydantic puts its word into paths: (groups, hoop, *ring*, count)."""
 
 _BOOLEANS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 
@@ -30,32 +31,48 @@ def complaints(error: ValidationError, data: Any, source: Source) -> list[Proble
         data: the plain data that were validated.
         source: the places of the values.
     """
-    problems = [_complaint(found, data, source) for found in error.errors(include_url=False)]
-    return list(dict.fromkeys(problems))
+    findings = [found for found in error.errors(include_url=False) if not _is_echo(found, data)]
+    last_by_place = {(found["type"], _path(found, data)): found for found in findings}
+    return [_complaint(found, data, source) for found in last_by_place.values()]
+
+
+def _is_echo(found: ErrorDetails, data: Any) -> bool:
+    """Tell whether a list is called too short only because its items, which are complained of too, did not count."""
+    value = _value(_path(found, data), data)
+    return found["type"] == "too_short" and isinstance(value, list) and len(value) >= found["ctx"]["min_length"]
 
 
 def _complaint(found: ErrorDetails, data: Any, source: Source) -> Problem:
     path = _path(found, data)
     value = _value(path, data)
     match found["type"]:
-        case "missing" if isinstance(found["loc"][-1], int):
-            message = f"needs {int(found['loc'][-1]) + 1} entries (got {shown(value)})"
-        case "missing":
-            message = _missing(path, data)
-        case "extra_forbidden":
-            message = _unknown_key(path, data, source)
         case "union_tag_not_found" | "union_tag_invalid":
             return _unknown_word(found, path, data, source)
+        case "missing" if isinstance(found["loc"][-1], str):
+            message = _missing(path, data)
+        case "missing" | "too_long" | "tuple_type":
+            message = f"needs {_form(found, path, data)} (got {shown(value)})"
+        case "extra_forbidden":
+            message = _unknown_key(path, data, source)
         case "model_type" | "model_attributes_type" | "dict_type":
-            message = _no_mapping(path, value, data)
+            message = f"needs a mapping {_keys(path, data)} (got {shown(value)})"
         case "name":
             message = f"{found['msg']} (got {shown(path[-1])})"
         case kind if kind in _SAYS_ALL:
             message = found["msg"]
         case kind:
-            needs = _NEEDS[kind].format(**found.get("ctx", {})) if kind in _NEEDS else found["msg"]
+            needs = _NEEDS[kind].format(**_context(found)) if kind in _NEEDS else found["msg"]
             message = f"{needs} (got {shown(value)}{_hint(kind, value)})"
     return source.problem(path, message)
+
+
+def _context(found: ErrorDetails) -> dict[str, Any]:
+    """Return the bounds and choices that a finding mentions, as a user writes them."""
+    given = found.get("ctx", {})
+    context = {key: f"{value:g}" if isinstance(value, float) else value for key, value in given.items()}
+    if "expected" in context:
+        context["expected"] = context["expected"].replace("'", "")
+    return context
 
 
 _SAYS_ALL = ("one_of", "min_gap", "push_rounds", "zero_axis", "selection_syntax")
@@ -67,13 +84,11 @@ _NEEDS = {
     "int_type": "needs a whole number",
     "bool_type": "needs true or false",
     "string_type": "needs text",
-    "tuple_type": "needs a list",
     "literal_error": "needs {expected}",
-    "greater_than": "needs a number above {gt:g}",
-    "greater_than_equal": "needs {ge:g} or more",
-    "less_than_equal": "needs {le:g} or less",
-    "too_short": "needs at least {min_length} in it",
-    "too_long": "needs {max_length} entries",
+    "greater_than": "needs a number above {gt}",
+    "greater_than_equal": "needs {ge} or more",
+    "less_than_equal": "needs {le} or less",
+    "too_short": "needs {min_length} or more entries",
 }
 """What a value needs, by pydantic's name of the finding."""
 
@@ -107,6 +122,19 @@ def _missing(path: Path, data: Any) -> str:
     return f"needs a value (got null): {said}" if is_null else f"missing: {said}"
 
 
+def _form(found: ErrorDetails, path: Path, data: Any) -> str:
+    """Return how a list is written, or at least how long it is."""
+    declaration = declaration_at(path[:-1], data)
+    if declaration is not None:
+        return field_docs()[declaration.__name__][str(path[-1])].type
+    match found:
+        case {"type": "missing", "loc": (*_, int(last))}:
+            return f"{last + 1} entries"
+        case {"type": "too_long", "ctx": {"max_length": n_entries}}:
+            return f"{n_entries} entries"
+    return "a list"
+
+
 def _unknown_key(path: Path, data: Any, source: Source) -> str:
     key = str(path[-1])
     declaration = declaration_at(path[:-1], data)
@@ -118,14 +146,20 @@ def _unknown_key(path: Path, data: Any, source: Source) -> str:
     mark, reopened = source.mark(path), source.mark(path[:-1])
     if mark.file != reopened.file and not is_setting(mark):
         return f"{message}to drop what is extended, write `{readable(key)}: null` in {reopened.file}"
-    word = discriminator(declaration) if declaration is not None else None
-    return message + meant(key, keys, f"the keys of {word[0]} {word[1]} are" if word else "the keys here are")
+    chosen = discriminator(declaration) if declaration is not None else None
+    if chosen is None:
+        return message + meant(key, keys, "the keys here are")
+    kind, word = chosen
+    owners = [other for other, fields in words_in(str(path[0])).items() if key in fields]
+    if owners:
+        return f"{message}it belongs to {kind} {either(owners)}; the keys of {kind} {word} are {', '.join(keys)}"
+    return message + meant(key, keys, f"the keys of {kind} {word} are")
 
 
 def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) -> Problem:
     """Complain about the word that chooses a declaration: the shape, rule or kind."""
     key = found["ctx"]["discriminator"].strip("'")
-    words = words_in(str(path[0]))
+    words = list(words_in(str(path[0])))
     declared = _value(path, data)
     if key not in declared:
         return source.problem((*path, key), f"missing: {either(words)}")
@@ -136,14 +170,14 @@ def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) ->
     return source.problem((*path, key), f"unknown {key} {shown(value)}; {remedy}")
 
 
-def _no_mapping(path: Path, value: Any, data: Any) -> str:
+def _keys(path: Path, data: Any) -> str:
+    """Return how a mapping is written."""
     declaration = declaration_at(path, data)
     if declaration is not None:
-        keys = ", ".join(f"{key}: …" for key in descriptions(declaration))
-        return f"needs keys: {{{keys}}} (got {shown(value)})"
-    if len(path) == 1 or path == ("render", "colors"):
-        return f"needs a mapping from names to declarations (got {shown(value)})"
-    return f"needs a declaration: a mapping of keys (got {shown(value)})"
+        return f"{{{', '.join(f'{key}: …' for key in descriptions(declaration))}}}"
+    if path[0] in _TAGGED_SECTIONS and len(path) > 1:
+        return f"{{{_TAGGED_SECTIONS[str(path[0])]}: …}}"
+    return "of names, `name: …`"
 
 
 def _hint(kind: str, value: Any) -> str:

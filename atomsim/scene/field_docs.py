@@ -49,11 +49,13 @@ def discriminator(declaration: type[Declaration]) -> tuple[str, str] | None:
     return None
 
 
-def words_in(section: str) -> list[str]:
-    """Return the words that choose a declaration in a section: the shapes, rules or kinds."""
+def words_in(section: str) -> dict[str, list[str]]:
+    """Return the words that choose a declaration in a section (shapes, rules or kinds), each with its keys."""
     declared = get_args(Scene.model_fields[section].annotation)[1]
-    chosen_by = [discriminator(declaration) for declaration in _options(declared, None)]
-    return [word for _, word in filter(None, chosen_by)]
+    chosen_by = {
+        discriminator(declaration): list(descriptions(declaration)) for declaration in _options(declared, None)
+    }
+    return {chosen[1]: keys for chosen, keys in chosen_by.items() if chosen is not None}
 
 
 def declaration_at(path: Path, data: Any) -> type[Declaration] | None:
@@ -97,8 +99,8 @@ def _chosen(annotation: Any, data: Any) -> type[Declaration] | None:
 
 
 def _options(annotation: Any, data: Any) -> list[Any]:
-    """Return the alternatives of an annotation, without `Annotated` and unions; one mapping may stand for a list."""
-    is_lone = get_origin(annotation) is tuple and isinstance(data, dict)
+    """Return the alternatives of an annotation, without `Annotated` and unions; one item may stand for a list."""
+    is_lone = get_origin(annotation) is tuple and not isinstance(data, list)
     if get_origin(annotation) is Annotated or is_lone:
         return _options(get_args(annotation)[0], data)
     if get_origin(annotation) in (dict, tuple) or isinstance(annotation, type):

@@ -70,13 +70,13 @@ def _base_name(extends: Node, folder: str, chain: list[str]) -> str:
         return SceneError([Problem(extends.mark, "extends", message)])
 
     if not isinstance(extends.value, str):
-        raise refused(f"needs the path of a scene file (got {shown(extends.value)})")
+        raise refused(f"needs the path of a scene file (got {shown(extends.plain())})")
     if not extends.value or Path(extends.value).is_absolute():
-        raise refused(f"needs a path relative to this file (got {shown(extends.value)})")
+        raise refused(f"needs a path relative to this file (got {shown(extends.plain())})")
     base = os.path.normpath(Path(chain[-1]).parent / extends.value)
     target = Path(os.path.realpath(base))
     if not target.is_relative_to(folder):
-        raise refused(f"leads outside the folder of {printable(chain[0])} (got {shown(extends.value)})")
+        raise refused(f"leads outside the folder of {printable(chain[0])} (got {shown(extends.plain())})")
     if str(target) in [os.path.realpath(name) for name in chain]:
         raise refused(f"goes round in a circle: {' → '.join(printable(name) for name in [*chain, base])}")
     if len(chain) == MAX_FILES:

@@ -71,12 +71,12 @@ def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
     root = override(root, overrides)
     data = root.plain()
     source = Source(name=name, overrides=overrides, marks=Places(root))
-    problems = check_references(data, source)
+    present = without_nulls(data)
+    problems = check_references(present, source)
     scene = _validated(data, source, problems)
     if problems or scene is None:
         raise SceneError(_in_order(problems, source))
-    text = to_yaml(without_nulls(data))
-    return LoadedScene(scene, Source(name, text, overrides, source.marks))
+    return LoadedScene(scene, Source(name, to_yaml(present), overrides, source.marks))
 
 
 def _validated(data: dict[str, Any], source: Source, problems: list[Problem]) -> Scene | None:

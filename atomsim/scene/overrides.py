@@ -53,7 +53,7 @@ def _apply(root: Node, setting: str, mark: Mark) -> Node:
         raise _refused(mark, (), "a path is keys and indices with a dot between two, like `forces.weight.impulse.2`")
     if parts[0] == "extends":
         raise _refused(mark, parts, "only a scene file can extend another")
-    node = read_yaml(value, lambda line, column: mark)
+    node = read_yaml(value, lambda line, column: mark, parts)
     return _set(root, (), parts, node)
 
 
@@ -83,8 +83,8 @@ def _set_key(entries: dict[str, Node], path: Path, deeper: tuple[str, ...], node
 def _nothing_there(entries: dict[str, Node], path: Path, deeper: tuple[str, ...], node: Node) -> str:
     present = [name for name, entry in entries.items() if entry.value is not None]
     remedy = meant(str(path[-1]), present, "there are") if present else "nothing is declared here"
-    if deeper and not remedy.endswith("?"):
-        whole = "".join(f"{{{part}: " for part in deeper) + shown(node.plain()) + "}" * len(deeper)
+    if deeper and node.value is not None and not remedy.endswith("?"):
+        whole = "".join(f"{{{readable(part)}: " for part in deeper) + shown(node.plain()) + "}" * len(deeper)
         remedy = f"make it whole with `{dotted(path)}={whole}`"
     return f"there is no `{readable(str(path[-1]))}`; {remedy}"
 

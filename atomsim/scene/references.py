@@ -18,7 +18,7 @@ def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
     """Find names that are no groups, and rounds to show that are never run.
 
     Args:
-        data: the plain data of a scene; what is malformed in them is passed over, for validation reports it.
+        data: the plain data of a scene without nulls; what is malformed is left to validation.
         source: the places of the values.
     """
     return [*_unknown_groups(data, source), *_rounds_never_run(data, source)]

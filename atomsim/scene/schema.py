@@ -122,7 +122,7 @@ def _nullable(value: Schema) -> Schema:
         if {"type": "null"} not in alternatives:
             alternatives.append({"type": "null"})
         return value
-    outside = {key: value.pop(key) for key in ("description", "default", "title") if key in value}
+    outside: Schema = {key: value.pop(key) for key in ("description", "default", "title") if key in value}
     return {"anyOf": [value, {"type": "null"}], **outside}
 
 
@@ -186,7 +186,7 @@ def _in_words(value: Schema, definitions: dict[str, Schema]) -> str:
     if "prefixItems" in value:
         return f"[{', '.join(_in_words(item, definitions) for item in value['prefixItems'])}]"
     if value["type"] == "array":
-        return f"list of {_in_words(value['items'], definitions)}"
+        return f"[{_in_words(value['items'], definitions)}, …]"
     if value["type"] == "object":
         return "mapping by name"
     return _scalar_in_words(value)

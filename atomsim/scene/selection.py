@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from atomsim.scene.wording import readable
+
 _EXPRESSION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_-]*)\s*(?:\[([^\[\]]*)\]\s*)?", re.ASCII)
 _NUMBER = re.compile(r"\s*([+-]?[0-9]{1,18})\s*", re.ASCII)
 
@@ -38,7 +40,9 @@ def parse_selection(text: str) -> SelectionPart:
     """
     match = _EXPRESSION.fullmatch(text)
     if match is None:
-        raise SelectionSyntaxError(f"`{_short(text)}` is no selection; write `ring`, `ring[3]`, `ring[0:10]` or `all`")
+        raise SelectionSyntaxError(
+            f"`{readable(text)}` is no selection; write `ring`, `ring[3]`, `ring[0:10]` or `all`"
+        )
     group, inside = match.groups()
     if inside is None:
         return SelectionPart(group, ())
@@ -51,13 +55,13 @@ def _parse_axis(axis: str, text: str) -> int | slice:
     """Read one index or slice; only steps above zero make sense for a set of atoms."""
     bounds = [_parse_bound(bound, text) for bound in axis.split(":")]
     if len(bounds) > 3:
-        raise SelectionSyntaxError(f"`{_short(text)}`: a slice is start:stop or start:stop:step")
+        raise SelectionSyntaxError(f"`{readable(text)}`: a slice is start:stop or start:stop:step")
     if len(bounds) == 1:
         if bounds[0] is None:
-            raise SelectionSyntaxError(f"`{_short(text)}`: an index is missing; `:` selects everything along an axis")
+            raise SelectionSyntaxError(f"`{readable(text)}`: an index is missing; `:` selects everything along an axis")
         return bounds[0]
     if len(bounds) == 3 and bounds[2] is not None and bounds[2] < 1:
-        raise SelectionSyntaxError(f"`{_short(text)}`: the step of a slice is 1 or more")
+        raise SelectionSyntaxError(f"`{readable(text)}`: the step of a slice is 1 or more")
     return slice(*bounds)
 
 
@@ -66,10 +70,5 @@ def _parse_bound(bound: str, text: str) -> int | None:
         return None
     match = _NUMBER.fullmatch(bound)
     if match is None:
-        raise SelectionSyntaxError(f"`{_short(text)}`: `{_short(bound.strip())}` is not a whole number")
+        raise SelectionSyntaxError(f"`{readable(text)}`: `{readable(bound.strip())}` is not a whole number")
     return int(match.group(1))
-
-
-def _short(text: str) -> str:
-    """Keep a message readable whatever the user wrote."""
-    return text if len(text) <= 60 else text[:57] + "…"

@@ -26,12 +26,13 @@ Place = Callable[[int, int], Mark]
 """Makes a mark of a line and a column, both counted from 1."""
 
 
-def read_yaml(text: str, place: Place) -> Node:
+def read_yaml(text: str, place: Place, at: Path = ()) -> Node:
     """Read a YAML document into a tree.
 
     Args:
         text: the document; at most 16 MiB, 32 levels deep, a million values with aliases written out.
         place: makes a mark of line and column.
+        at: the path of the document in the scene.
 
     Returns:
         The tree; an empty text is null.
@@ -47,7 +48,7 @@ def read_yaml(text: str, place: Place) -> Node:
         lines = _LINE_BREAK.split(text[: unprintable.start()])
         message = f"the character U+{ord(unprintable.group()):04X} cannot stand in YAML"
         raise SceneError([Problem(place(len(lines), len(lines[-1]) + 1), "", message)])
-    return _Reader(text, place).document()
+    return _Reader(text, place).document(at)
 
 
 class _Reader:
@@ -60,13 +61,13 @@ class _Reader:
         self._anchors: dict[str, Node | None] = {}
         self._n_values = 0
 
-    def document(self) -> Node:
+    def document(self, at: Path) -> Node:
         """Read the one document of the text."""
         next(self._events)
         start = next(self._events)
         if isinstance(start, yaml.StreamEndEvent):
             return Node(None, self._place(1, 1))
-        root = self._node(next(self._events), ())
+        root = self._node(next(self._events), at)
         next(self._events)
         after = next(self._events)
         if not isinstance(after, yaml.StreamEndEvent):
@@ -126,17 +127,17 @@ class _Reader:
             node = self._node(next(self._events), (*path, key))
             if key in entries:
                 first = entries[key].mark.line
-                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`, first on line {first}")
+                where = f", first on line {first}" if first else ""
+                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}")
             else:
                 entries[key] = Node(node.value, self._mark(event))
         return entries
 
     def _key(self, event: yaml.Event, path: Path) -> str:
         """Read a key; whatever it looks like, it is text."""
-        self._node(event, path)
         if not isinstance(event, yaml.ScalarEvent):
-            self._refuse(event, path, "a key must be a plain word")
-            return ""
+            raise self._refused(event, path, "a key must be a plain word")
+        self._node(event, path)
         if event.value == "<<" and event.implicit[0]:
             self._refuse(event, path, "merge keys `<<` are not part of the scene language; write the keys out")
         return str(event.value)

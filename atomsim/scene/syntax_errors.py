@@ -6,23 +6,26 @@ import re
 
 import yaml
 
+from atomsim.scene.wording import shown
+
+_LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
+
 _EXPLANATIONS = (
     (
         r"mapping values are not allowed",
-        "a `: ` is not allowed here; check the indentation and the space after the colon on the line before, "
-        "and put text with a colon in quotes",
+        "a `: ` cannot stand here; check indentation and the spaces after colons, and put text with a colon in quotes",
     ),
-    (r"could not find expected ':'", "the key before this has no `: `; put a colon and a space after it"),
+    (r"could not find expected ':'", "the key on {context} has no `: `, a colon and a space, after it"),
     (r"',' or '\]'", "the list `[` of {context} is not closed, or a comma is missing"),
     (r"',' or '}'", "the mapping `{{` of {context} is not closed, or a comma is missing"),
     (r"unexpected end of stream|unexpected document separator", "the quote of {context} is not closed"),
     (r"entries are not allowed", "a list item `- ` begins on a line of its own"),
-    (r"node content", "a value is missing, or a bracket closes that was never opened"),
+    (r"node content", "a value or a closing bracket is missing"),
     (r"'-' indicator", "the list of {context} goes on only with `- `"),
-    (r"<document start>", "nothing can follow the end of the document; is there a bracket too many?"),
+    (r"<document start>", "nothing can follow the end of the document"),
     (r"unknown escape|escape code|hexdecimal", "`\\` in double quotes begins an escape; use single quotes"),
-    (r"alphabetic or numeric", "a `*` or `&` at the beginning of a value needs quotes"),
-    (r"expected key|<block end>", "the line does not fit the lines above it; check indentation, quotes and brackets"),
+    (r"alphabetic or numeric", "a value that begins with `*` or `&` needs quotes"),
+    (r"expected key|<block end>", "this does not fit the lines above it; check indentation and quotes"),
 )
 """A pattern of the parser's words (those of libyaml and of PyYAML) and ours; `{context}` is where it began."""
 
@@ -35,21 +38,24 @@ def explain(error: yaml.MarkedYAMLError, text: str) -> str:
         text: the whole text that it read.
     """
     problem = str(error.problem or error.context)
-    character = _character_at(error.problem_mark, text)
+    mark, context = error.problem_mark, error.context_mark
+    character = _line(text, mark)[mark.column : mark.column + 1] if mark is not None else ""
     if "violates indentation" in problem or character == "\t":
         return "a tab is not allowed here; indent with spaces"
     if "cannot start any token" in problem:
-        return f"a value cannot begin with `{character}`; put it in quotes"
-    context = f"line {error.context_mark.line + 1}" if error.context_mark is not None else "the line before"
+        return f"a value cannot begin with {shown(character)}; put it in quotes"
+    if character == "[":
+        return 'a `[` cannot stand here; text with brackets needs quotes inside brackets: "ring[0:10]"'
+    if character and character in "]}" and "']'" not in problem:
+        return f"this `{character}` closes nothing that is open here"
     for pattern, explanation in _EXPLANATIONS:
         if re.search(pattern, problem):
-            return explanation.format(context=context)
+            where = f"line {context.line + 1}" if context is not None else "the line before"
+            comment = "; ` #` begins a comment" if context is not None and " #" in _line(text, context) else ""
+            return explanation.format(context=where) + comment
     return f"this is not YAML: {problem}"
 
 
-def _character_at(mark: yaml.Mark | None, text: str) -> str:
-    """Return the character at a mark; lines end as they do in YAML."""
-    if mark is None:
-        return ""
-    lines = re.split("\r\n|[\r\n\x85\u2028\u2029]", text)
-    return lines[mark.line][mark.column : mark.column + 1] if mark.line < len(lines) else ""
+def _line(text: str, mark: yaml.Mark) -> str:
+    """Return the line of a mark, as YAML counts lines; the end of the text may be marked on the line after the last."""
+    return [*_LINE_BREAK.split(text), ""][mark.line]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -19,8 +20,8 @@ def printable(text: str) -> str:
 
 
 def readable(text: str) -> str:
-    """Return a text fit for a message: printable, and cut off when it is long."""
-    escaped = printable(text[: _LONGEST + 1])
+    """Return a text fit for a message: printable, visible when it is empty, cut off when it is long."""
+    escaped = printable(text[: _LONGEST + 1]) or '""'
     return escaped if len(escaped) <= _LONGEST else escaped[: _LONGEST - 1] + "…"
 
 
@@ -63,7 +64,7 @@ def meant(word: str, choices: Iterable[str], otherwise: str) -> str:
     choices = list(choices)
     close = suggestion(word, choices)
     if close is not None:
-        return f"did you mean `{close}`?"
+        return f"did you mean `{readable(close)}`?"
     return f"{otherwise} {listed(choices)}"
 
 
@@ -81,6 +82,8 @@ def _written(value: Any) -> str:
         return "{" + ", ".join(f"{key}: {_written(inner)}" for key, inner in _first(value.items())) + "}"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_written(inner) for inner in _first(value)) + "]"
+    if isinstance(value, float) and not math.isfinite(value):
+        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     return json.dumps(value)
 
 

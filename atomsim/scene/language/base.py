@@ -50,7 +50,7 @@ Vector = Annotated[tuple[Number, Number, Number], Field(strict=False, title="[x,
 
 def _check_direction(value: Vector) -> Vector:
     if not any(value):
-        raise PydanticCustomError("zero_axis", "an axis needs a direction, not [0, 0, 0]")
+        raise PydanticCustomError("zero_axis", "needs a direction, not [0, 0, 0]")
     return value
 
 
@@ -58,7 +58,7 @@ def _spell_out_axis(value: Any) -> Any:
     letters = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     if isinstance(value, str):
         if value not in letters:
-            raise PydanticCustomError("axis", "an axis is x, y, z or a direction [x, y, z]")
+            raise PydanticCustomError("axis", "needs x, y, z or a direction [x, y, z]")
         return letters[value]
     return value
 
@@ -109,7 +109,7 @@ Named = Annotated[dict[Name, Declared], BeforeValidator(_drop_nulls)]
 
 def _check_color(value: str) -> str:
     if value.lower() not in CSS_COLORS and not re.fullmatch(r"#(?:[0-9a-fA-F]{3}){1,2}", value):
-        raise PydanticCustomError("color", "a color is a CSS name (steelblue) or #rgb or #rrggbb")
+        raise PydanticCustomError("color", "needs a CSS name such as steelblue, or '#rgb' or '#rrggbb' in quotes")
     return value
 
 
@@ -121,7 +121,7 @@ def _as_list(value: Any) -> Any:
     if isinstance(value, str):
         return (value,)
     if not isinstance(value, (list, tuple)) or not value:
-        raise PydanticCustomError("selection", "a selection is a group name such as `ring`, `ring[0:10]`, or a list")
+        raise PydanticCustomError("selection", "needs a selection such as `ring`, `ring[0:10]` or a list of these")
     return value
 
 
@@ -154,7 +154,7 @@ def _check_rest(value: Any) -> Any:
     if value == "initial":
         return value
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < float("inf"):
-        raise PydanticCustomError("rest", "`rest` is `initial` or a number, zero or more")
+        raise PydanticCustomError("rest", "needs `initial` or a number, zero or more")
     return float(value)
 
 

@@ -109,7 +109,7 @@ class PlaneGroup(GroupBase):
 
     shape: Literal["plane"]
     """A flat grid of nx · ny atoms; the atom at (x, y) has the index nx · y + x."""
-    counts: Annotated[tuple[Count, Count], Field(strict=False)]
+    counts: Annotated[tuple[Count, Count], Field(strict=False, title="[nx, ny]")]
     """Numbers of atoms [nx, ny]."""
     step_x: Vector
     """From each atom to the next along the grid's x [length]."""
@@ -122,7 +122,7 @@ class BlockGroup(GroupBase):
 
     shape: Literal["block"]
     """A cubic grid of nx · ny · nz atoms; the atom at (x, y, z) has the index (z · ny + y) · nx + x, x fastest."""
-    counts: Annotated[tuple[Count, Count, Count], Field(strict=False)]
+    counts: Annotated[tuple[Count, Count, Count], Field(strict=False, title="[nx, ny, nz]")]
     """Numbers of atoms [nx, ny, nz]."""
     spacing: Positive
     """Distance between neighbours along each axis [length]."""

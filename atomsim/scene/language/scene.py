@@ -73,7 +73,7 @@ class Scene(Declaration):
     """A scene: groups of atoms, what binds them, what may collide, what acts from outside."""
 
     atomsim: Annotated[Literal[1], BeforeValidator(_check_version)]
-    """Version of the scene language."""
+    """The version of the scene language, which is 1."""
     title: str = ""
     """One line that says what the scene shows."""
     description: str = ""

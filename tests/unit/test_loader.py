@@ -1,0 +1,290 @@
+"""Loading scenes: files, what they extend, settings, the resolved text."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from atomsim.errors import Mark, SceneError
+from atomsim.scene.loader import MAX_PROBLEMS, load, loads
+from atomsim.scene.tree import Node, merge, without_nulls
+
+REPOSITORY = Path(__file__).parents[2]
+GOOD = """\
+atomsim: 1
+time_step: 0.01
+rounds: 100
+groups:
+  ring: {shape: ring, count: 20, radius: 4}
+  rod: {shape: string, count: 3, step: [1, 0, 0]}
+forces:
+  weight: {kind: gravity, impulse: [0, -0.01, 0]}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return the current folder, empty but for a scene."""
+    monkeypatch.chdir(tmp_path)
+    write("base.yaml", GOOD)
+    return tmp_path
+
+
+def write(name: str, text: str | bytes) -> None:
+    """Write a file below the current folder."""
+    Path(name).parent.mkdir(parents=True, exist_ok=True)
+    Path(name).write_bytes(text if isinstance(text, bytes) else text.encode())
+
+
+def refusal(name: str, *settings: str) -> str:
+    """Return the message a file gets."""
+    with pytest.raises(SceneError) as caught:
+        load(name, settings)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("path", sorted(REPOSITORY.glob("scenes/*.yaml")), ids=lambda path: path.stem)
+def test_shipped_scene_loads_and_its_text_stands_for_it(path: Path) -> None:
+    loaded = load(path)
+    assert loaded.scene.title
+    assert loads(loaded.source.text).scene == loaded.scene
+    assert "extends" not in loaded.source.text
+
+
+def test_source_is_as_the_user_named_it(folder: Path) -> None:
+    loaded = load("./base.yaml", ["rounds=7"])
+    assert loaded.source.name == "./base.yaml"
+    assert loaded.source.overrides == ("rounds=7",)
+    assert loaded.source.mark(("groups", "ring", "count")) == Mark("./base.yaml", 5, 23)
+    assert loaded.source.mark(("groups", "ring", "centre")) == Mark("./base.yaml", 5, 3)
+    assert loaded.source.mark(("rounds",)) == Mark("--set rounds=7", 0, 0)
+    assert load(folder / "base.yaml").source.name == str(folder / "base.yaml")
+
+
+def test_text_is_resolved(folder: Path) -> None:
+    write("new.yaml", "extends: base.yaml\ntitle: 'yes'\nforces: {weight: null, mud: {kind: hold}}\n")
+    assert load("new.yaml", ["groups.ring.radius=1e-9", "groups.rod.centre=[-0.0, 1e300, .5]"]).source.text == (
+        "atomsim: 1\n"
+        "time_step: 0.01\n"
+        "rounds: 100\n"
+        "groups:\n"
+        "  ring: {shape: ring, count: 20, radius: 1.0e-09}\n"
+        "  rod:\n"
+        "    shape: string\n"
+        "    count: 3\n"
+        "    step: [1, 0, 0]\n"
+        "    centre: [-0.0, 1.0e+300, 0.5]\n"
+        "forces:\n"
+        "  mud: {kind: hold}\n"
+        "title: 'yes'\n"
+    )
+
+
+def test_byte_order_mark_and_line_ends_of_windows(folder: Path) -> None:
+    write("windows.yaml", b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+    assert load("windows.yaml").scene == load("base.yaml").scene
+
+
+def test_a_null_is_not_there() -> None:
+    assert loads(GOOD + "jitter:\nbonds: {a: null}\nrender: {camera: ~}\n").scene == loads(GOOD).scene
+
+
+def test_a_scene_can_be_piped() -> None:
+    code = "from atomsim.scene.loader import load; print(load('/dev/stdin').scene.rounds)"
+    done = subprocess.run([sys.executable, "-c", code], input=GOOD, capture_output=True, text=True, check=True)
+    assert done.stdout == "100\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "s.yaml:1:1: the scene is empty; it begins with `atomsim: 1`"),
+        (b"atomsim: 1\ntitle: \xfcber\n", "s.yaml:2:8: the byte 0xfc is not UTF-8; save the file as UTF-8"),
+        ("ä: ".encode() + b"\xff", "s.yaml:1:4: the byte 0xff is not UTF-8; save the file as UTF-8"),
+        (GOOD.encode("utf-16"), "s.yaml: the file is UTF-16; save it as UTF-8"),
+        (b"\0" * 100, "s.yaml:1:1: the character U+0000 cannot stand in YAML"),
+        (b"a" * (2**24 + 1), "s.yaml: the file is larger than 16 MiB"),
+        (
+            b"\x89HDF\r\n\x1a\n\0\0",
+            "s.yaml: this is a trajectory; `atomsim show --scene` writes out its scene",
+        ),
+    ],
+    ids=["empty", "latin 1", "byte", "utf-16", "zeros", "large", "trajectory"],
+)
+def test_bad_content(content: bytes, message: str, folder: Path) -> None:
+    write("s.yaml", content)
+    assert refusal("s.yaml") == message
+
+
+def test_bad_file(folder: Path) -> None:
+    assert refusal("base.yml") == "base.yml: there is no such file; did you mean `base.yaml`?"
+    assert refusal("nowhere/else.yaml") == "nowhere/else.yaml: there is no such file"
+    assert refusal("a\0b") == "a\\x00b: there is no such file"
+    assert refusal(".") == ".: this is a folder, not a scene file"
+    assert refusal("base.yaml/x") == "base.yaml/x: the file cannot be read (Not a directory)"
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_forbidden_file(folder: Path) -> None:
+    Path("base.yaml").chmod(0)
+    assert refusal("base.yaml") == "base.yaml: the file may not be read (permission denied)"
+
+
+def test_extends_merges_in_the_order_of_the_base(folder: Path) -> None:
+    write(
+        "top.yaml",
+        "extends: base.yaml\ngroups: {new: {shape: string, count: 1, step: [1, 1, 1]}, ring: {count: 5}}\nrounds: 9\n",
+    )
+    scene = load("top.yaml").scene
+    assert list(scene.groups) == ["ring", "rod", "new"]
+    assert scene.groups["ring"].count == 5
+    assert scene.groups["ring"].radius == 4
+    assert scene.rounds == 9
+    assert list(scene.forces) == ["weight"]
+
+
+def test_extends_in_a_chain_and_into_a_folder(folder: Path) -> None:
+    write("parts/a.yaml", "extends: b.yaml\nrounds: 2\n")
+    write("parts/b.yaml", "extends: ../base.yaml\nrounds: 3\ntitle: b\n")
+    write("top.yaml", "extends: parts/a.yaml\n")
+    loaded = load("top.yaml")
+    assert (loaded.scene.rounds, loaded.scene.title) == (2, "b")
+    assert loaded.source.mark(("rounds",)) == Mark("parts/a.yaml", 2, 1)
+    assert loaded.source.mark(("title",)) == Mark("parts/b.yaml", 3, 1)
+    assert loaded.source.mark(("time_step",)) == Mark("base.yaml", 2, 1)
+
+
+def test_mistakes_of_several_files_name_each(folder: Path) -> None:
+    write("base.yaml", GOOD.replace("count: 20", "count: none"))
+    write("top.yaml", "extends: base.yaml\ntime_step: none\ngroups:\n  rod: {shape: ring, radius: 3}\n")
+    assert refusal("top.yaml", "rounds=none").split("\n") == [
+        'top.yaml:2:1: time_step: needs a number (got "none")',
+        '--set rounds=none: rounds: needs a whole number (got "none")',
+        'base.yaml:5:23: groups.ring.count: needs a whole number (got "none")',
+        "base.yaml:6:34: groups.rod.step: unknown key `step`; to drop what is extended, write `step: null` in top.yaml",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("extends", "message"),
+    [
+        ("3", "needs the path of a scene file (got 3)"),
+        ("[base.yaml]", 'needs the path of a scene file (got ["base.yaml"])'),
+        ("/etc/passwd", 'needs a path relative to this file (got "/etc/passwd")'),
+        ('""', 'needs a path relative to this file (got "")'),
+        ("../x.yaml", 'leads outside the folder of top.yaml (got "../x.yaml")'),
+        ("link/x.yaml", 'leads outside the folder of top.yaml (got "link/x.yaml")'),
+        ("bse.yaml", "there is no such file; did you mean `base.yaml`?"),
+        ("top.yaml", "goes round in a circle: top.yaml → top.yaml"),
+        ("./parts/../top.yaml", "goes round in a circle: top.yaml → top.yaml"),
+    ],
+)
+def test_bad_extends(extends: str, message: str, folder: Path) -> None:
+    Path("link").symlink_to("/")
+    write("top.yaml", f"atomsim: 1\nextends: {extends}\n")
+    assert refusal("top.yaml") == f"top.yaml:2:1: extends: {message}"
+
+
+def test_extends_in_a_circle_shows_the_chain(folder: Path) -> None:
+    write("a.yaml", "extends: b.yaml")
+    write("b.yaml", "extends: sub/c.yaml")
+    write("sub/c.yaml", "extends: ../a.yaml")
+    assert refusal("a.yaml") == (
+        "sub/c.yaml:1:1: extends: goes round in a circle: a.yaml → b.yaml → sub/c.yaml → a.yaml"
+    )
+
+
+def test_extends_through_too_many_files(folder: Path) -> None:
+    for i in range(20):
+        write(f"{i}.yaml", f"extends: {i + 1}.yaml")
+    assert refusal("0.yaml") == "15.yaml:1:1: extends: goes through more than 16 files"
+
+
+def test_bad_extended_file(folder: Path) -> None:
+    write("top.yaml", "extends: base.yaml")
+    write("base.yaml", "- a")
+    assert refusal("top.yaml") == 'base.yaml:1:1: a scene is a mapping of keys such as `groups:` (got ["a"])'
+    write("base.yaml", "a: [")
+    assert refusal("top.yaml") == "base.yaml:2:1: a value or a closing bracket is missing"
+
+
+def test_settings_replace_make_and_delete() -> None:
+    loaded = loads(
+        GOOD,
+        overrides=[
+            "forces.weight.impulse.2=-0.02",
+            "forces.wind={kind: push, impulse: [1, 0, 0]}",
+            "forces.wind.until_round=5",
+            "groups.rod=null",
+            " title = a = b",
+        ],
+    )
+    assert loaded.scene.forces["weight"].impulse == (0, -0.01, -0.02)
+    assert loaded.scene.forces["wind"].until_round == 5
+    assert list(loaded.scene.groups) == ["ring"]
+    assert loaded.scene.title == "a = b"
+
+
+def test_a_setting_replaces_a_mapping_whole() -> None:
+    with pytest.raises(SceneError, match=r"forces\.weight\.impulse: missing"):
+        loads(GOOD, overrides=["forces.weight={kind: gravity}"])
+
+
+def test_a_shorter_run_need_not_change_what_is_shown() -> None:
+    text = GOOD + "render: {rounds: [0, 100]}\n"
+    assert loads(text, overrides=["rounds=50"]).scene.rounds == 50
+    with pytest.raises(SceneError, match=r"render\.rounds\.1: round 100 is never run; the last is 50"):
+        loads(text.replace("rounds: 100\n", "rounds: 50\n"))
+
+
+@pytest.mark.parametrize("setting", ["\x1b[31m=1", "\udc80.x=1", "title=1\n2", "forces.a\nb=1"])
+def test_what_a_terminal_would_obey_is_escaped(setting: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        loads(GOOD, overrides=["rounds=many", setting])
+    assert all(line.isprintable() for line in str(caught.value).split("\n"))
+
+
+def test_too_many_mistakes_are_counted() -> None:
+    positions = ", ".join(["x"] * 1000)
+    with pytest.raises(SceneError) as caught:
+        loads(
+            f"atomsim: 1\ntime_step: 1\nrounds: 1\ngroups: {{a: {{shape: atoms, positions: [{positions}]}}}}", "s.yaml"
+        )
+    assert len(caught.value.problems) == MAX_PROBLEMS + 1
+    assert str(caught.value.problems[-1]) == "s.yaml:1:1: and 900 more mistakes"
+
+
+def node(value: object) -> Node:
+    """Return plain data as a tree."""
+    mark = Mark("t", 1, 1)
+    if isinstance(value, dict):
+        return Node({key: node(inner) for key, inner in value.items()}, mark)
+    if isinstance(value, list):
+        return Node([node(inner) for inner in value], mark)
+    assert value is None or isinstance(value, (str, int, float))
+    return Node(value, mark)
+
+
+@pytest.mark.parametrize(
+    ("base", "top", "merged"),
+    [
+        ({"a": 1, "b": 2}, {"c": 3, "a": 4}, {"a": 4, "b": 2, "c": 3}),
+        ({"a": {"b": 1, "c": 2}}, {"a": {"c": 3}}, {"a": {"b": 1, "c": 3}}),
+        ({"a": [1, 2]}, {"a": [3]}, {"a": [3]}),
+        ({"a": {"b": 1}}, {"a": 2}, {"a": 2}),
+        ({"a": 2}, {"a": {"b": 1}}, {"a": {"b": 1}}),
+        ({"a": 1, "b": 2}, {"a": None}, {"b": 2}),
+        ({"a": {"b": 1}}, {"a": {"b": None}}, {"a": {}}),
+        ({"a": 1}, {"b": {"c": None}}, {"a": 1, "b": {}}),
+        ({"a": None, "b": 1}, {"a": 2}, {"b": 1, "a": 2}),
+        ({"a": 1}, {"a": [None]}, {"a": [None]}),
+    ],
+)
+def test_merge(base: object, top: object, merged: dict[str, object]) -> None:
+    result = without_nulls(merge(node(base), node(top)).plain())
+    assert result == merged
+    assert list(result) == list(merged)

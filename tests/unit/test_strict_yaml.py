@@ -1,0 +1,206 @@
+"""The strict YAML reader: values, places, limits."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import pytest
+import yaml
+
+from atomsim.errors import Mark, SceneError
+from atomsim.scene import strict_yaml
+from atomsim.scene.source import Path
+from atomsim.scene.strict_yaml import MAX_CHARACTERS, MAX_DEPTH, MAX_VALUES, read_yaml
+from atomsim.scene.tree import Node, Places
+
+
+def read(text: str) -> Node:
+    """Read a text called `t`."""
+    return read_yaml(text, lambda line, column: Mark("t", line, column))
+
+
+def refusal(text: str) -> str:
+    """Return the message a text gets."""
+    with pytest.raises(SceneError) as caught:
+        read(text)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1", 1),
+        ("-1", -1),
+        ("+7", 7),
+        ("0", 0),
+        ("1.5", 1.5),
+        ("1.", 1.0),
+        (".5", 0.5),
+        ("-.5", -0.5),
+        ("1e-3", 1e-3),
+        ("1E5", 1e5),
+        ("1.5e+3", 1500.0),
+        (".inf", math.inf),
+        ("-.INF", -math.inf),
+        ("true", True),
+        ("false", False),
+        ("null", None),
+        ("~", None),
+        ("", None),
+        ("yes", "yes"),
+        ("no", "no"),
+        ("on", "on"),
+        ("off", "off"),
+        ("True", "True"),
+        ("NULL", "NULL"),
+        ("010", "010"),
+        ("00.5", "00.5"),
+        ("0x1F", "0x1F"),
+        ("0o17", "0o17"),
+        ("1_000", "1_000"),
+        ("1:30", "1:30"),
+        ("2024-01-31", "2024-01-31"),
+        ("1e", "1e"),
+        (".", "."),
+        ("-", None),
+        ("=", "="),
+        ("inf", "inf"),
+        ("'1'", "1"),
+        ('"true"', "true"),
+        ("''", ""),
+        ("١", "١"),  # a digit, but not one of ours
+    ],
+)
+def test_plain_word(text: str, value: object) -> None:
+    read_value = read(f"key: {text}").plain()["key"] if text != "-" else read("key:\n- ").plain()["key"][0]
+    assert read_value == value
+    assert type(read_value) is type(value)
+
+
+def test_not_a_number_and_minus_zero() -> None:
+    value, zero = read("[.nan, -0.0]").plain()
+    assert math.isnan(value)
+    assert math.copysign(1, zero) == -1
+
+
+def test_a_number_of_too_many_digits_is_text() -> None:
+    assert read("[" + "9" * 5000 + "]").plain() == ["9" * 5000]
+
+
+TEXT = """\
+# a comment
+groups:
+  ring: {count: 3, centre: [1, 2.5, 3]}
+  "floor":
+    - a
+    - b: 1
+ünï: x
+"""
+PLACES: dict[Path, tuple[int, int]] = {
+    (): (1, 1),
+    ("groups",): (2, 1),
+    ("groups", "ring"): (3, 3),
+    ("groups", "ring", "count"): (3, 10),
+    ("groups", "ring", "centre"): (3, 20),
+    ("groups", "ring", "centre", 0): (3, 29),
+    ("groups", "ring", "centre", 1): (3, 32),
+    ("groups", "ring", "centre", 2): (3, 37),
+    ("groups", "floor"): (4, 3),
+    ("groups", "floor", 0): (5, 7),
+    ("groups", "floor", 1): (6, 7),
+    ("groups", "floor", 1, "b"): (6, 7),
+    ("ünï",): (7, 1),
+}
+
+
+@pytest.mark.parametrize("parser", [yaml.SafeLoader, getattr(yaml, "CSafeLoader", yaml.SafeLoader)])
+def test_every_value_has_its_place(parser: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(strict_yaml, "_PARSER", parser)
+    places = Places(read(TEXT))
+    assert {path: (mark.line, mark.column) for path, mark in places.items()} == PLACES
+    assert len(places) == len(PLACES)
+    assert ("groups", "ring", "radius") not in places
+    assert ("groups", "ring", "centre", 3) not in places
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: [1, 2\n", "t:2:1: the list `[` of line 1 is not closed, or a comma is missing"),
+        ("a: {b: 1\nc: 2\n", "t:2:2: the mapping `{` of line 1 is not closed, or a comma is missing"),
+        (
+            "a: b: c",
+            "t:1:5: a `: ` cannot stand here; check indentation and the spaces after colons, "
+            "and put text with a colon in quotes",
+        ),
+        ("a: 'x\nb: 2", "t:2:5: the quote of line 1 is not closed"),
+        ("a: @x", 't:1:4: a value cannot begin with "@"; put it in quotes'),
+        ("a: - 1", "t:1:4: a list item `- ` begins on a line of its own"),
+        ("a:\n  b: 1\n c: 2\n", "t:3:2: this does not fit the lines above it; check indentation and quotes"),
+        ("a: *", "t:1:5: a value that begins with `*` or `&` needs quotes"),
+        ("a: 1\n...\nb: 2\n", "t:3:1: nothing can follow the end of the document"),
+        ("a:\n\tb: 1", "t:2:1: a tab is not allowed here; indent with spaces"),
+    ],
+)
+@pytest.mark.parametrize("parser", [yaml.SafeLoader, getattr(yaml, "CSafeLoader", yaml.SafeLoader)])
+def test_syntax_errors_read_the_same_from_both_parsers(
+    text: str, message: str, parser: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(strict_yaml, "_PARSER", parser)
+    assert refusal(text) == message
+
+
+def test_aliases_repeat_their_anchor_at_their_own_place() -> None:
+    root = read("a: &x {b: 1}\nc: *x\nd: [*x]\n")
+    assert root.plain() == {"a": {"b": 1}, "c": {"b": 1}, "d": [{"b": 1}]}
+    assert Places(root)["c",] == Mark("t", 2, 1)
+    assert Places(root)["d", 0] == Mark("t", 3, 5)
+    assert Places(root)["c", "b"] == Mark("t", 1, 8)
+
+
+def test_an_anchor_may_be_set_again() -> None:
+    assert read("[&a 1, *a, &a 2, *a]").plain() == [1, 1, 2, 2]
+
+
+def test_an_unprintable_character_is_refused_at_its_place() -> None:
+    assert refusal("a: 1\r\nb: \x00\n") == "t:2:4: the character U+0000 cannot stand in YAML"
+    assert refusal("a: \ud800") == "t:1:4: the character U+D800 cannot stand in YAML"
+
+
+def bomb(*, width: int, height: int) -> str:
+    """Return a text that stands for width ** height values."""
+    levels = [f"- &a0 [{', '.join('x' * width)}]"]
+    levels += [f"- &a{i} [{', '.join([f'*a{i - 1}'] * width)}]" for i in range(1, height)]
+    return "\n".join(levels)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (bomb(width=10, height=9), f"stands for more than {MAX_VALUES:,} values"),
+        (bomb(width=1, height=200), f"nested more than {MAX_DEPTH} deep"),
+        ("[" * 100_000, f"nested more than {MAX_DEPTH} deep"),
+        ("{a: " * 100_000, f"nested more than {MAX_DEPTH} deep"),
+        ("- " * 100_000, f"nested more than {MAX_DEPTH} deep"),
+        ("? " * 100_000, "a key must be a plain word"),
+        ("x" * (MAX_CHARACTERS + 1), "longer than 16 MiB"),
+        ("a: &a [*a]", "the alias `*a` stands inside what it repeats"),
+        ("a: &a {b: &b [*a]}", "the alias `*a` stands inside what it repeats"),
+    ],
+    ids=["wide bomb", "deep bomb", "lists", "mappings", "items", "keys", "long", "circle", "wider circle"],
+)
+def test_what_would_fill_the_memory_ends_at_once(text: str, message: str) -> None:
+    begin = time.perf_counter()
+    assert message in refusal(text)
+    assert time.perf_counter() - begin < 2
+
+
+def test_all_surprises_are_told_at_once() -> None:
+    assert refusal("a: !!int 1\na: 2\n<<: {b: 1}\nc: *d\n[e]: 1").split("\n") == [
+        "t:1:4: a: tags are not allowed; leave out `!!int`",
+        "t:2:1: a: duplicate key `a`, first on line 1",
+        "t:3:1: merge keys `<<` are not part of the scene language; write the keys out",
+        "t:4:4: c: there is no anchor `&d` before this alias",
+        "t:5:1: a key must be a plain word",
+    ]
