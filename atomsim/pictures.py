@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from atomsim.errors import InputError
-from atomsim.render import Row, View, atom_color, compose, frames_to
+from atomsim.drawing import Row, View, atom_color, compose, frames_to
 from atomsim.scene import loads
 from atomsim.trajectory import Trajectory
 

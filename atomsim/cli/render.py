@@ -39,7 +39,7 @@ def render(
     """
     from atomsim import pictures
     from atomsim.errors import InputError
-    from atomsim.render.files import is_our_picture
+    from atomsim.drawing.files import is_our_picture
 
     wanted = None if rounds is None else _rounds(rounds)
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy._core._multiarray_umath import __cpu_dispatch__
 
-from atomsim.render.camera import Camera, View
-from atomsim.render.picture import draw
+from atomsim.drawing.camera import Camera, View
+from atomsim.drawing.picture import draw
 
 STEELBLUE, FIREBRICK = (70 / 255, 130 / 255, 180 / 255), (178 / 255, 34 / 255, 34 / 255)
 GRAY = (245 / 255, 245 / 255, 247 / 255)
@@ -121,7 +121,7 @@ def test_a_camera_inside_a_crowd_draws_what_is_before_it():
 def test_bands_leave_no_seam(monkeypatch):
     atoms = np.random.default_rng(10).uniform(-4, 4, size=(60, 3))
     whole = picture(atoms)
-    monkeypatch.setattr("atomsim.render.picture._BAND", 4000)
+    monkeypatch.setattr("atomsim.drawing.picture._BAND", 4000)
     assert (picture(atoms) == whole).all()
 
 
@@ -129,9 +129,9 @@ DIGEST = textwrap.dedent(
     """
     import hashlib
     import numpy as np
-    from atomsim.render.camera import View
-    from atomsim.render.framing import fit
-    from atomsim.render.picture import draw
+    from atomsim.drawing.camera import View
+    from atomsim.drawing.framing import fit
+    from atomsim.drawing.picture import draw
 
     place = np.arange(300.0)
     position = np.stack([place % 17 - 8, (place * place) % 13 - 6, (place * 7) % 11 - 5], axis=1)

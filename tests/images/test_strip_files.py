@@ -14,10 +14,10 @@ from PIL import Image
 
 from atomsim.core.model import Frame, GroupSpan, Observables, Origin
 from atomsim.errors import InputError
-from atomsim.render.camera import View
-from atomsim.render.files import is_our_picture
-from atomsim.render.layout import Layout
-from atomsim.render.strip import Row, atom_color, compose, frames_to
+from atomsim.drawing.camera import View
+from atomsim.drawing.files import is_our_picture
+from atomsim.drawing.layout import Layout
+from atomsim.drawing.strip import Row, atom_color, compose, frames_to
 
 SIZE = (96, 72)
 NOTHING_MEASURED = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
@@ -196,6 +196,6 @@ def test_atoms_have_the_color_of_their_group():
 
 
 def test_matplotlib_waits_until_it_is_needed():
-    code = "import sys, atomsim.render; print({'matplotlib', 'PIL', 'h5py'} & set(sys.modules))"
+    code = "import sys, atomsim.drawing; print({'matplotlib', 'PIL', 'h5py'} & set(sys.modules))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "set()\n"

@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from atomsim.render.layout import LARGE, SMALL, Layout, frame_size
+from atomsim.drawing.layout import LARGE, SMALL, Layout, frame_size
 
 
 @pytest.mark.parametrize(("n_frames", "columns"), [(1, 1), (8, 8), (9, 5), (16, 8), (17, 6), (24, 8), (25, 7)])

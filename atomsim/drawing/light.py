@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atomsim.core.model import Floats, Indices
-from atomsim.render.camera import Vector, cross, quantise, unit
-from atomsim.render.trace import Grid, nearest_ball
+from atomsim.drawing.camera import Vector, cross, quantise, unit
+from atomsim.drawing.trace import Grid, nearest_ball
 
 LAMP_TOWARDS: Vector = (-0.85, 0.85, 0.3)
 """Where the lamp hangs for an upright viewer (right, up, back): left, above and a little behind him."""

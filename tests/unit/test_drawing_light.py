@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atomsim.render.light import LAMP_TOWARDS, Beam, beams_on, from_viewer, highlight_towards, shine
+from atomsim.drawing.light import LAMP_TOWARDS, Beam, beams_on, from_viewer, highlight_towards, shine
 
 UP = (0.0, 1.0, 0.0)
 DOWN_BEAM = (0.0, 1.0, 0.0)

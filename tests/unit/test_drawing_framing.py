@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from atomsim.render.camera import View, outline
-from atomsim.render.framing import MARGIN, fit, is_drawable
+from atomsim.drawing.camera import View, outline
+from atomsim.drawing.framing import MARGIN, fit, is_drawable
 
 SIZE = (400, 300)
 

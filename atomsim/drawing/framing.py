@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atomsim.core.model import Floats
-from atomsim.render.camera import EYE_DISTANCE, FARTHEST, Camera, View, is_before_eye, outline
+from atomsim.drawing.camera import EYE_DISTANCE, FARTHEST, Camera, View, is_before_eye, outline
 
 MARGIN = 1.06
 """The picture is wider than what it shows by this factor."""

@@ -13,11 +13,11 @@ import numpy as np
 
 from atomsim.core.model import Floats, Frame, GroupSpan
 from atomsim.errors import InputError, RunError
-from atomsim.render.camera import View
-from atomsim.render.files import MARK, check_target, write_whole
-from atomsim.render.framing import fit, is_drawable
-from atomsim.render.layout import LARGE, Layout, frame_size
-from atomsim.render.picture import Pixels, draw
+from atomsim.drawing.camera import View
+from atomsim.drawing.files import MARK, check_target, write_whole
+from atomsim.drawing.framing import fit, is_drawable
+from atomsim.drawing.layout import LARGE, Layout, frame_size
+from atomsim.drawing.picture import Pixels, draw
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

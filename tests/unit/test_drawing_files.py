@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from atomsim.errors import InputError, RunError
-from atomsim.render.files import check_target, write_whole
+from atomsim.drawing.files import check_target, write_whole
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from atomsim.render import trace
-from atomsim.render.trace import NOTHING, Coverage, Grid, nearest_ball, normals
+from atomsim.drawing import trace
+from atomsim.drawing.trace import NOTHING, Coverage, Grid, nearest_ball, normals
 
 GRID = Grid(-6.0, 4.5, 0.3, 40, 30)
 

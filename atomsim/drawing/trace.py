@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from atomsim.core.model import Floats, Indices
-from atomsim.render.camera import is_before_eye, outline
+from atomsim.drawing.camera import is_before_eye, outline
 
 NOTHING = -1
 """The owner of a pixel that no ball covers."""

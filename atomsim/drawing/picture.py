@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atomsim.core.model import Floats, Indices
-from atomsim.render.camera import Camera
-from atomsim.render.framing import is_drawable
-from atomsim.render.light import Beam, beams_on, highlight_towards, shine
-from atomsim.render.trace import NOTHING, Coverage, Grid, nearest_ball, normals
+from atomsim.drawing.camera import Camera
+from atomsim.drawing.framing import is_drawable
+from atomsim.drawing.light import Beam, beams_on, highlight_towards, shine
+from atomsim.drawing.trace import NOTHING, Coverage, Grid, nearest_ball, normals
 
 SUPERSAMPLING = 2
 """Each pixel is the mean of this many times as many along either side."""
