@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -67,8 +68,8 @@ def describe_trajectory(trajectory: Trajectory) -> list[str]:
         if series.ndim == 1:
             lines.append(f"  {name.replace('_', ' '):<28}{series[0]:>14.6g}{series[-1]:>14.6g}")
         else:
-            length = (series * series).sum(axis=1) ** 0.5
-            lines.append(f"  {'|' + name.replace('_', ' ') + '|':<28}{length[0]:>14.6g}{length[-1]:>14.6g}")
+            length = [math.hypot(*row) for row in (series[0], series[-1])]
+            lines.append(f"  {'|' + name.replace('_', ' ') + '|':<28}{length[0]:>14.6g}{length[1]:>14.6g}")
     if trajectory.from_journal:
         lines.append(f"  read from its journal; to make the file: atomsim recover {trajectory.path}")
     return lines

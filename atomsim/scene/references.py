@@ -1,4 +1,4 @@
-"""Names and rounds that a scene mentions but does not have; needs no atoms, so it is told before compiling."""
+"""Groups that a scene mentions but does not have; needs no atoms, so it is told before compiling."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from atomsim.errors import Problem
-from atomsim.scene.overrides import is_setting
 from atomsim.scene.selection import SelectionSyntaxError, parse_selection
 from atomsim.scene.source import Path, Source
 from atomsim.scene.wording import meant, readable
@@ -15,13 +14,13 @@ _SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
 
 
 def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
-    """Find names that are no groups, and rounds to show that are never run.
+    """Find names that are no groups.
 
     Args:
         data: the plain data of a scene without nulls; what is malformed is left to validation.
         source: the places of the values.
     """
-    return [*_unknown_groups(data, source), *_rounds_never_run(data, source)]
+    return list(_unknown_groups(data, source))
 
 
 def _unknown_groups(data: dict[str, Any], source: Source) -> Iterator[Problem]:
@@ -48,17 +47,6 @@ def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
 def _colored(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
     for name in _mapping(_mapping(data.get("render")).get("colors")):
         yield ("render", "colors", name), name
-
-
-def _rounds_never_run(data: dict[str, Any], source: Source) -> Iterator[Problem]:
-    """Rounds to show beyond the last; a run cut short on the command line shows what there is."""
-    last = data.get("rounds")
-    shown = _mapping(data.get("render")).get("rounds")
-    if type(last) is not int or not isinstance(shown, list) or is_setting(source.mark(("rounds",))):
-        return
-    for index, round_index in enumerate(shown):
-        if type(round_index) is int and round_index > last:
-            yield source.problem(("render", "rounds", index), f"round {round_index} is never run; the last is {last}")
 
 
 def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:

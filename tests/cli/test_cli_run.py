@@ -1,0 +1,197 @@
+"""`atomsim run`, `render`, `show`, `compare`, `verify`: whole messages and exit codes, as a user meets them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+
+def text(message: str) -> str:
+    """Hide what may differ between two machines: seconds and rounds per second."""
+    return re.sub(r"in [\d.]+ s \([\d,.e+]+ rounds/s\)", "in # s (# rounds/s)", message)
+
+
+def test_run_says_what_it_did_and_what_to_type_next(cli):
+    result = cli("run", "scenes/rods.yaml", "--rounds", "20")
+    assert result.code == 0
+    assert result.err == ""
+    lines = text(result.out).splitlines()
+    assert re.fullmatch(r"out\.h5: 20 rounds in # s \(# rounds/s\), [\d.]+ kB", lines[0])
+    assert re.fullmatch(r"digest of round 20: [0-9a-f]{64}", lines[1])
+    assert lines[2:] == ["next: atomsim render out.h5"]
+
+
+def test_quiet_prints_nothing(cli):
+    result = cli("run", "scenes/rods.yaml", "--rounds", "20", "--quiet")
+    assert (result.code, result.out, result.err) == (0, "", "")
+
+
+def test_an_existing_file_stays_without_force(cli):
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20").code == 0
+    before = Path("out.h5").read_bytes()
+    result = cli("run", "scenes/threads.yaml", "--rounds", "20")
+    assert (result.code, result.out) == (2, "")
+    assert result.err == "out.h5 exists; add --force to replace it, or go on with: atomsim run --resume out.h5\n"
+    assert Path("out.h5").read_bytes() == before
+    assert cli("run", "scenes/threads.yaml", "--rounds", "20", "--force").code == 0
+    assert Path("out.h5").read_bytes() != before
+
+
+def test_settings_are_recorded_and_change_the_run(cli):
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20", "--set", "time_step=0.005").code == 0
+    shown = cli("show", "out.h5").out
+    assert "rods.yaml: --set time_step=0.005, --set rounds=20\n" in shown
+    assert "τ = 0.005" in shown
+
+
+def test_the_scene_inside_a_trajectory_gives_the_same_trajectory(cli):
+    assert cli("run", "scenes/ring-soft.yaml", "--rounds", "60", "-o", "a.h5").code == 0
+    Path("again.yaml").write_text(cli("show", "a.h5", "--scene").out)
+    assert cli("run", "again.yaml", "-o", "b.h5").code == 0
+    assert cli("compare", "a.h5", "b.h5").out == "identical: 7 frames up to round 60\n"
+    assert cli("verify", "b.h5").out == "identical: 7 frames up to round 60 are what the scene gives\n"
+
+
+def test_two_runs_write_the_same_bytes(cli):
+    for name in ("a.h5", "b.h5"):
+        assert cli("run", "scenes/ring.yaml", "--rounds", "30", "-o", name).code == 0
+    assert Path("a.h5").read_bytes() == Path("b.h5").read_bytes()
+
+
+def test_a_resumed_run_writes_the_bytes_of_an_uninterrupted_one(cli):
+    assert cli("run", "scenes/ring.yaml", "--rounds", "75", "-o", "a.h5").code == 0
+    assert cli("run", "scenes/ring.yaml", "--rounds", "33", "-o", "b.h5").code == 0
+    result = cli("run", "--resume", "b.h5", "--rounds", "75")
+    assert result.code == 0
+    assert text(result.out).startswith("b.h5: 42 rounds in ")
+    assert cli("compare", "a.h5", "b.h5").code == 0
+
+
+def test_compare_names_round_atom_and_size(cli):
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20", "-o", "a.h5").code == 0
+    assert (
+        cli("run", "scenes/rods.yaml", "--rounds", "20", "-o", "b.h5", "--set", "groups.right.centre.1=0.5").code == 0
+    )
+    result = cli("compare", "a.h5", "b.h5")
+    assert result.code == 1
+    assert result.out == (
+        "different: round 0: position of 70 of 140 atoms differs, "
+        "first right[0] (atom 70), most right[0] (atom 70) by 0.5\n"
+    )
+    assert cli("compare", "a.h5", "b.h5", "--tolerance", "0.6").out == (
+        "identical within 0.6: 3 frames up to round 20\n"
+    )
+
+
+def test_compare_of_different_atoms_and_rounds(cli):
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20", "-o", "a.h5").code == 0
+    assert cli("run", "scenes/rods.yaml", "--rounds", "30", "-o", "b.h5").code == 0
+    assert cli("run", "scenes/ring.yaml", "--rounds", "10", "-o", "c.h5").code == 0
+    assert cli("compare", "a.h5", "b.h5").out == "different: round 30 is only in the second\n"
+    assert cli("compare", "a.h5", "c.h5").out == "different: a.h5 has 140 atoms, c.h5 309\n"
+
+
+def test_a_blow_up_ends_with_code_3_and_keeps_the_frames_before(cli):
+    result = cli("run", "scenes/rods.yaml", "--rounds", "400", "--set", "time_step=1")
+    assert result.code == 3
+    assert "blew up at round" in result.err
+    assert "Traceback" not in result.err
+    shown = cli("show", "out.h5")
+    assert shown.code == 0
+    assert "  ended      blew up" in shown.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("run",), "name a scene to run, as in: atomsim run scenes/rods.yaml"),
+        (("run", "scenes"), "scenes: "),
+        (("run", "scenes/rod.yaml"), "scenes/rod.yaml: there is no such file; did you mean `scenes/rods.yaml`?"),
+        (("run", "scenes/rods.yaml", "-o", "no/out.h5"), "no/out.h5: there is no folder no"),
+        (("run", "scenes/rods.yaml", "--resume", "a.h5"), "--resume takes only --rounds"),
+        (("run", "--resume", "a.h5"), "a.h5: no such file"),
+        (("render", "a.h5"), "a.h5: no such file"),
+        (("render", "scenes/rods.yaml"), "scenes/rods.yaml: not a trajectory of atomsim"),
+        (("render", "a.h5", "--rounds", "1,x"), "--rounds needs whole numbers with commas between"),
+        (("render", "a.h5", "--rounds", "-5"), "--rounds needs whole numbers with commas between"),
+        (("render", "a.h5", "--camera", "30"), "--camera needs two numbers, as in 30,20 (got 30)"),
+        (("render", "a.h5", "--size", "640"), "--size needs two numbers, as in 640x480 (got 640)"),
+        (("show", "scenes/rods.yaml"), "scenes/rods.yaml: not a trajectory of atomsim"),
+        (("compare", "a.h5", "b.h5"), "a.h5: no such file"),
+        (("verify", "a.h5"), "a.h5: no such file"),
+        (("recover", "a.h5"), "a.h5: there is no journal a.h5.part to recover it from"),
+        (("check", "a.yaml"), "a.yaml: there is no such file"),
+    ],
+)
+def test_bad_usage_is_one_line_and_code_2(cli, arguments, message):
+    result = cli(*arguments)
+    assert result.code == 2
+    assert result.out == ""
+    assert result.err.startswith(message), result.err
+    assert result.err.count("\n") == 1
+    assert sorted(path.name for path in Path().iterdir()) == ["scenes"]
+
+
+@pytest.mark.parametrize("command", ["run", "render", "check", "show", "compare", "verify", "recover", "schema"])
+def test_help_of_each_command_shows_an_example(cli, command):
+    result = cli(command, "--help")
+    assert result.code == 0
+    assert f"atomsim {command} " in result.out
+    assert "Example" in result.out
+
+
+def test_render_replaces_only_pictures_of_its_own(cli):
+    assert cli("run", "scenes/threads.yaml", "--rounds", "20").code == 0
+    assert cli("render", "out.h5", "--size", "64x48").out == "out.png\n"
+    first = Path("out.png").read_bytes()
+    assert cli("render", "out.h5", "--size", "64x48").code == 0
+    assert Path("out.png").read_bytes() == first
+    Path("out.png").write_bytes(b"a photograph")
+    result = cli("render", "out.h5", "--size", "64x48")
+    assert (result.code, result.err) == (2, "out.png exists and atomsim did not draw it; add --force to replace it\n")
+    assert cli("render", "out.h5", "--size", "64x48", "--force").code == 0
+    assert Path("out.png").read_bytes() == first
+
+
+def test_render_of_a_round_beyond_the_end(cli):
+    assert cli("run", "scenes/threads.yaml", "--rounds", "20").code == 0
+    result = cli("render", "out.h5", "--rounds", "0,5000")
+    assert (result.code, result.err) == (2, "out.h5: there is no round 5000; it ends at round 20\n")
+
+
+def test_render_writes_one_picture_per_frame(cli):
+    assert cli("run", "scenes/threads.yaml", "--rounds", "20").code == 0
+    result = cli("render", "out.h5", "--frames", "film", "--size", "64x48")
+    assert result.out == "film: 3 pictures, round-00.png to round-20.png\n"
+    assert len(list(Path("film").iterdir())) == 3
+
+
+def test_check_describes_every_scene_and_reports_every_mistake(cli):
+    result = cli("check", "scenes/rods.yaml")
+    assert result.code == 0
+    assert result.out == (
+        "scenes/rods.yaml: Two rods collide, bounce apart and vibrate\n"
+        "  atoms      140: left 70, right 70\n"
+        "  bonds      4,830: left 2,415 (dense), right 2,415 (dense)\n"
+        "  collisions 8,806 pairs: contact 4,900, own 3,906\n"
+        "  forces     0\n"
+        "  run        4,000 rounds of τ = 0.01\n"
+        "  record     401 frames, 2.8 MB\n"
+        "  memory     about 60.6 MB\n"
+    )
+    broken = (
+        Path("scenes/rods.yaml").read_text().replace("count: 70", "cuont: 70").replace("within: left", "within: lft")
+    )
+    Path("broken.yaml").write_text(broken)
+    result = cli("check", "broken.yaml", "scenes/ring.yaml")
+    assert result.code == 2
+    assert result.err.count("broken.yaml:") >= 3
+    assert "did you mean `count`?" in result.err
+    assert "did you mean `left`?" in result.err
+    assert result.out.startswith("scenes/ring.yaml: ")
+
+
+def test_version(cli):
+    assert re.fullmatch(r"atomsim \d+\.\d+\.\d+\n", cli("--version").out)
