@@ -132,7 +132,7 @@ def _listed(bonds: ListedBonds, left: Indices, right: Indices) -> Pairs:
             if index >= atoms.size:
                 raise RuleError(
                     f"pairs.{number}",
-                    f"index {index} is out of range: there are {atoms.size} atoms, 0 to {atoms.size - 1}",
+                    f"index {index} is out of range; the atoms here are numbered 0 to {atoms.size - 1}",
                 )
         if left[i] == right[k]:
             raise RuleError(f"pairs.{number}", f"[{i}, {k}] would bind an atom to itself")

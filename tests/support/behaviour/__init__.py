@@ -1,0 +1,1 @@
+"""Behaviours measured from trajectories: from frames to numbers; knows no expected number."""

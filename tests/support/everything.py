@@ -1,0 +1,98 @@
+"""One scene that uses every shape, placement, selection, rule, metric, kind of collision and kind of force."""
+
+from __future__ import annotations
+
+from typing import Any
+
+GROUPS: dict[str, Any] = {
+    "thread": {"shape": "string", "count": 9, "step": [0.7, 0.1, 0], "velocity": [0.3, 0, -0.2]},
+    "wheel": {
+        "shape": "ring",
+        "count": 11,
+        "radius": 2.5,
+        "axis": "y",
+        "centre": [1, 2.2, 0.5],
+        "rotate": [{"axis": "z", "degrees": 30}, {"axis": [1, 2, -0.5], "degrees": -70}],
+        "spin": {"axis": [0.3, 1, 0], "rate": 0.4},
+        "velocity": [0, -0.5, 0],
+    },
+    "hoop": {"shape": "ring", "count": 5, "radius": 1.1, "axis": "x", "centre": [-3, 1, 1]},
+    "triangle": {
+        "shape": "polygon",
+        "corners": [[0, 0, 0], [3, 0, 0.5], [0.5, 2.6, 0]],
+        "spacing": 0.8,
+        "centre": [-2, -3.5, 0],
+        "velocity": [0.1, 0.8, 0],
+    },
+    "floor": {
+        "shape": "plane",
+        "counts": [6, 5],
+        "step_x": [1.3, 0, 0.1],
+        "step_y": [0, 0.2, 1.4],
+        "centre": [0, -1.7, 0],
+        "rotate": {"axis": "x", "degrees": 5},
+    },
+    "brick": {"shape": "block", "counts": [3, 2, 4], "spacing": 0.9, "centre": [3, 0.5, 2], "velocity": [-1, 0, -0.5]},
+    "loose": {
+        "shape": "atoms",
+        "positions": [[4, -2, 1], [5.2, -2.1, 1.3], [4.1, -0.6, 2.2]],
+        "velocity": [-0.5, 0, 0],
+    },
+    "moved": {
+        "shape": "atoms",
+        "positions": [[0, 0, 0], [1, 0.5, 0], [0.3, 1.1, 0.2]],
+        "centre": [-4, 2, -2],
+        "rotate": {"axis": "y", "degrees": 200},
+        "spin": {"axis": "x", "rate": -1},
+    },
+    "turned": {
+        "shape": "atoms",
+        "positions": [[6, 0, 0], [7, 0.5, 0]],
+        "rotate": {"axis": "z", "degrees": 45},
+    },
+}
+
+BONDS: dict[str, Any] = {
+    "thread": {"within": "thread", "rule": "neighbour"},
+    "wheel": {"within": "wheel", "rule": "neighbour", "reach": 3},
+    "open": {"within": ["hoop", "triangle"], "rule": "neighbour", "closed": False, "rest": 0.9},
+    "bent": {"within": "thread[::2]", "rule": "neighbour", "reach": 2, "closed": True, "rest": 1.5},
+    "grid": {"within": ["floor", "brick"], "rule": "distance-threshold", "threshold": 1.5, "metric": "grid"},
+    "patch": {"within": "floor[1:4, :3]", "rule": "distance-threshold", "threshold": 3, "metric": "grid", "rest": 0},
+    "near": {"within": "all", "rule": "distance-threshold", "threshold": 0.95},
+    "glue": {"between": ["brick", ["loose", "moved[0]"]], "rule": "distance-threshold", "threshold": 2.5},
+    "weld": {"between": [["loose", "moved"], ["moved", "turned"]], "rule": "all-pairs"},
+    "stiff": {"within": "brick[0, :, 1:]", "rule": "all-pairs"},
+    "listed": {"within": "triangle", "rule": "pairs", "pairs": [[0, 4], [4, 0], [2, 5]]},
+    "cross": {"between": ["wheel", "floor[-1, -1]"], "rule": "pairs", "pairs": [[10, 0], [3, 0]], "rest": 2},
+}
+
+COLLISIONS: dict[str, Any] = {
+    "own": {"within": ["thread", "wheel"], "min_gap": 3},
+    "loose": {"within": "loose"},
+    "contact": {"between": ["floor", ["thread", "wheel", "brick[:, 0, :]"]]},
+    "overlap": {"between": [["loose", "moved"], ["moved", "turned"]]},
+    "rest": {"among": ["triangle", "thread[2:7]", "hoop", ["brick", "loose"]]},
+}
+
+FORCES: dict[str, Any] = {
+    "ground": {"kind": "hold", "acts_on": ["floor[0, :]", "hoop[0]"]},
+    "air": {"kind": "damping", "coefficient": 0.02},
+    "weight": {"kind": "gravity", "acts_on": ["brick", "wheel"], "impulse": [0, -0.01, 0.003]},
+    "kick": {"kind": "push", "acts_on": "thread[-1]", "impulse": [0, 0.2, 0], "from_round": 3, "until_round": 9},
+    "wind": {"kind": "push", "acts_on": "moved", "impulse": [0.01, 0, 0], "from_round": 5},
+    "shake": {"kind": "oscillate", "acts_on": "floor[:, 0]", "impulse": [0.02, 0.05, 0], "period": 7, "phase": 0.5},
+    "motor": {"kind": "torque", "acts_on": "wheel", "axis": [0.2, 1, 0], "magnitude": 0.5},
+    "crank": {"kind": "torque", "acts_on": "wheel[0:3]", "axis": "y", "magnitude": -0.2, "about": ["wheel", "hoop"]},
+    "leash": {"kind": "tether", "acts_on": ["turned", "loose[0]"], "target": [6, 1, 0]},
+    "anchor": {"kind": "tether", "acts_on": "hoop", "target": [-3, 1, 1], "rest": 0.5},
+}
+
+EVERYTHING: dict[str, Any] = {
+    "groups": GROUPS,
+    "time_step": 0.03,
+    "jitter": {"amplitude": 1e-3, "seed": 7},
+    "bonds": BONDS,
+    "collisions": COLLISIONS,
+    "forces": FORCES,
+}

@@ -1,0 +1,311 @@
+"""The paper's model pair by pair and number by number, in plain Python; imports nothing of the package.
+
+It is slow on purpose: every sum is a loop, in the order that the numerics convention writes down, over a pair table
+that lists every pair. A scene comes in as plain data (the `model_dump()` of a valid scene), so selections, rules and
+initial positions are worked out here a second time, by other means than the compiler's.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import math
+import random
+import struct
+from dataclasses import dataclass
+from typing import Any
+
+from support.oracle_shapes import add, cross, place, quantise, square, sub, unit
+
+Vector = tuple[float, float, float]
+Data = dict[str, Any]
+
+
+@dataclass
+class World:
+    """Everything about a scene as flat lists, and its state at `round_index`."""
+
+    time_step: float
+    round_index: int
+    position: list[Vector]
+    velocity: list[Vector]
+    bonds: list[list[tuple[int, int, float]]]
+    """Per declaration, sorted: atom, atom, squared desired distance."""
+    collisions: list[list[tuple[int, int]]]
+    """Per declaration, sorted: atom, atom."""
+    forces: list[Data]
+
+    def advance(self, n_rounds: int) -> None:
+        """Compute so many iteration rounds (paper section 2.2)."""
+        for _ in range(n_rounds):
+            impulse = self._impulse()
+            self.velocity = [add(v, j) for v, j in zip(self.velocity, impulse, strict=True)]
+            step = [(self.time_step * x, self.time_step * y, self.time_step * z) for x, y, z in self.velocity]
+            self.position = [add(c, s) for c, s in zip(self.position, step, strict=True)]
+            self.round_index += 1
+
+    def digest(self) -> str:
+        """Return the state digest."""
+        digest = hashlib.sha256()
+        for vectors in (self.position, self.velocity):
+            for vector in vectors:
+                digest.update(struct.pack("<3d", *(part + 0.0 for part in vector)))
+        return digest.hexdigest()
+
+    def is_finite(self) -> bool:
+        """Return whether the numbers still mean something."""
+        return all(math.isfinite(part) for vector in self.position + self.velocity for part in vector)
+
+    def _impulse(self) -> list[Vector]:
+        impulse = [(0.0, 0.0, 0.0)] * len(self.position)
+        for bonds in self.bonds:
+            self._add_table(impulse, [(i, k, _bond_weight(self._square(i, k), r2)) for i, k, r2 in bonds])
+        for collisions in self.collisions:
+            self._add_table(impulse, [(i, k, _collision_weight(self._square(i, k))) for i, k in collisions])
+        for force in self.forces:
+            self._add_force(impulse, force)
+        for force in self.forces:
+            if force["kind"] == "hold":
+                for atom in force["atoms"]:
+                    impulse[atom] = (0.0, 0.0, 0.0)
+        return impulse
+
+    def _square(self, i: int, k: int) -> float:
+        return square(sub(self.position[k], self.position[i]))
+
+    def _add_table(self, impulse: list[Vector], weighted: list[tuple[int, int, float]]) -> None:
+        """Sum a table on its own, then add its subtotals."""
+        subtotal = [(0.0, 0.0, 0.0)] * len(impulse)
+        for i, k, weight in weighted:
+            x, y, z = sub(self.position[k], self.position[i])
+            force = (weight * x, weight * y, weight * z)
+            subtotal[i] = add(subtotal[i], force)
+            subtotal[k] = sub(subtotal[k], force)
+        for atom, total in enumerate(subtotal):
+            impulse[atom] = add(impulse[atom], total)
+
+    def _add_force(self, impulse: list[Vector], force: Data) -> None:
+        for atom, extra in zip(force["atoms"], self._external(force), strict=True):
+            impulse[atom] = add(impulse[atom], extra)
+
+    def _external(self, force: Data) -> list[Vector]:
+        """Return what a force adds to each of its atoms in this round."""
+        atoms = force["atoms"]
+        match force["kind"]:
+            case "damping":
+                m = force["coefficient"]
+                return [(-(m * x), -(m * y), -(m * z)) for x, y, z in (self.velocity[atom] for atom in atoms)]
+            case "gravity":
+                return [force["impulse"]] * len(atoms)
+            case "push":
+                until = math.inf if force["until_round"] is None else force["until_round"]
+                is_on = force["from_round"] <= self.round_index < until
+                return [force["impulse"] if is_on else (0.0, 0.0, 0.0)] * len(atoms)
+            case "oscillate":
+                angle = 2.0 * math.pi * self.round_index / force["period"] + force["phase"]
+                x, y, z = force["impulse"]
+                swing = quantise(math.sin(angle))
+                return [(x * swing, y * swing, z * swing)] * len(atoms)
+            case "torque":
+                return self._torque(force)
+            case "tether":
+                return [self._pull(atom, force, r2) for atom, r2 in zip(atoms, force["rest_squared"], strict=True)]
+            case "hold":
+                return [(0.0, 0.0, 0.0)] * len(atoms)
+        raise ValueError(force["kind"])
+
+    def _torque(self, force: Data) -> list[Vector]:
+        x, y, z = _sum([self.position[atom] for atom in force["about_atoms"]])
+        n_about = len(force["about_atoms"])
+        centre = (x / n_about, y / n_about, z / n_about)
+        axis = unit(force["axis"])
+        arms = [cross(axis, sub(self.position[atom], centre)) for atom in force["atoms"]]
+        leverage = 0.0
+        for arm in arms:
+            leverage += square(arm)
+        if leverage == 0.0:
+            return [(0.0, 0.0, 0.0)] * len(arms)
+        scale = force["magnitude"] / leverage
+        return [(scale * x, scale * y, scale * z) for x, y, z in arms]
+
+    def _pull(self, atom: int, force: Data, rest_squared: float) -> Vector:
+        x, y, z = sub(force["target"], self.position[atom])
+        weight = _bond_weight(square((x, y, z)), rest_squared) if (x, y, z) != (0.0, 0.0, 0.0) else 0.0
+        return (weight * x, weight * y, weight * z)
+
+
+def build(scene: Data) -> World:
+    """Work out a world at round 0 from the plain data of a scene."""
+    groups = {name: _Group(data) for name, data in scene["groups"].items()}
+    for group, start in zip(groups.values(), itertools.accumulate(map(len, groups.values()), initial=0), strict=False):
+        group.start = start
+    placed = [position for group in groups.values() for position in group.position]
+    return World(
+        time_step=scene["time_step"],
+        round_index=0,
+        position=_jittered(placed, scene["jitter"]),
+        velocity=[velocity for group in groups.values() for velocity in group.velocity],
+        bonds=[_bonds(entry, groups, placed) for entry in scene["bonds"].values()],
+        collisions=[sorted(_collisions(entry, groups)) for entry in scene["collisions"].values()],
+        forces=[_force(entry, groups, placed) for entry in scene["forces"].values()],
+    )
+
+
+class _Group:
+    def __init__(self, data: Data) -> None:
+        self.data = data
+        self.start = 0
+        self.position, self.velocity = place(data)
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @property
+    def is_closed(self) -> bool:
+        return self.data["shape"] in ("ring", "polygon")
+
+    def grid_place(self, index: int) -> tuple[int, ...]:
+        """Return where on its grid an atom stands, x first."""
+        place = []
+        for count in self.data["counts"]:
+            place.append(index % count)
+            index //= count
+        return tuple(place)
+
+
+Groups = dict[str, _Group]
+
+
+def _select(expressions: tuple[str, ...], groups: Groups) -> list[int]:
+    """Return the atoms that any of the expressions names, ascending."""
+    return sorted({atom for expression in expressions for atom in _select_one(expression, groups)})
+
+
+def _select_one(expression: str, groups: Groups) -> list[int]:
+    name, _, inside = expression.replace(" ", "").rstrip("]").partition("[")
+    if name == "all":
+        return [atom for group in groups.values() for atom in range(group.start, group.start + len(group))]
+    group = groups[name]
+    axes = [_axis(text) for text in inside.split(",")] if inside else [slice(None)]
+    if len(axes) == 1:
+        chosen = set(_range(axes[0], len(group)))
+        return [group.start + index for index in range(len(group)) if index in chosen]
+    allowed = [set(_range(axis, count)) for axis, count in zip(axes, group.data["counts"], strict=True)]
+    return [
+        group.start + index
+        for index in range(len(group))
+        if all(place in places for place, places in zip(group.grid_place(index), allowed, strict=True))
+    ]
+
+
+def _axis(text: str) -> int | slice:
+    bounds = [int(bound) if bound else None for bound in text.split(":")]
+    return slice(*bounds) if ":" in text else int(text)
+
+
+def _range(axis: int | slice, count: int) -> list[int]:
+    everything = list(range(count))
+    return everything[axis] if isinstance(axis, slice) else [everything[axis]]
+
+
+def _bonds(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int, float]]:
+    pairs = {(min(pair), max(pair)) for pair in _bound_pairs(entry, groups, placed) if pair[0] != pair[1]}
+    return [(i, k, _rest_squared(entry["rest"], square(sub(placed[k], placed[i])))) for i, k in sorted(pairs)]
+
+
+def _bound_pairs(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int]]:
+    if entry.get("between"):
+        left, right = (_select(side, groups) for side in entry["between"])
+        return _apply_rule(entry, list(itertools.product(left, right)), left, right, groups, placed)
+    found = []
+    for expression in entry["within"]:
+        atoms = _select_one(expression, groups)
+        if entry["rule"] == "neighbour":
+            found += _neighbours(entry, atoms, expression, groups)
+        else:
+            found += _apply_rule(entry, list(itertools.combinations(atoms, 2)), atoms, atoms, groups, placed)
+    return found
+
+
+def _apply_rule(
+    entry: Data, every: list[tuple[int, int]], left: list[int], right: list[int], groups: Groups, placed: list[Vector]
+) -> list[tuple[int, int]]:
+    match entry["rule"]:
+        case "all-pairs":
+            return every
+        case "pairs":
+            return [(left[i], right[k]) for i, k in entry["pairs"]]
+        case "distance-threshold":
+            limit = entry["threshold"] * entry["threshold"]
+            if entry["metric"] == "grid":
+                return [(i, k) for i, k in every if _grid_square(i, k, groups) < limit]
+            return [(i, k) for i, k in every if 0.0 < square(sub(placed[k], placed[i])) < limit]
+    raise ValueError(entry["rule"])
+
+
+def _grid_square(i: int, k: int, groups: Groups) -> int:
+    group = next(group for group in groups.values() if group.start <= i < group.start + len(group))
+    one, other = group.grid_place(i - group.start), group.grid_place(k - group.start)
+    return sum((a - b) ** 2 for a, b in zip(one, other, strict=True))
+
+
+def _neighbours(entry: Data, atoms: list[int], expression: str, groups: Groups) -> list[tuple[int, int]]:
+    closed = entry["closed"]
+    if closed is None:
+        closed = expression in groups and groups[expression].is_closed
+    found = []
+    for (one, i), (other, k) in itertools.combinations(enumerate(atoms), 2):
+        gap = other - one
+        if gap <= entry["reach"] or (closed and len(atoms) - gap <= entry["reach"]):
+            found.append((i, k))
+    return found
+
+
+def _collisions(entry: Data, groups: Groups) -> set[tuple[int, int]]:
+    found: set[tuple[int, int]] = set()
+    if entry["within"]:
+        for expression in entry["within"]:
+            atoms = _select_one(expression, groups)
+            numbered = itertools.combinations(enumerate(atoms), 2)
+            found |= {(i, k) for (one, i), (other, k) in numbered if other - one >= (entry["min_gap"] or 1)}
+        return found
+    sides = [_select(side, groups) for side in entry["between"] or entry["among"]]
+    for left, right in itertools.combinations(sides, 2):
+        found |= {(min(i, k), max(i, k)) for i in left for k in right if i != k}
+    return found
+
+
+def _force(entry: Data, groups: Groups, placed: list[Vector]) -> Data:
+    force = dict(entry, atoms=_select(entry["acts_on"], groups))
+    if entry["kind"] == "torque":
+        force["about_atoms"] = _select(entry["about"], groups) if entry["about"] else force["atoms"]
+    if entry["kind"] == "tether":
+        squares = [square(sub(entry["target"], placed[atom])) for atom in force["atoms"]]
+        force["rest_squared"] = [_rest_squared(entry["rest"], initial) for initial in squares]
+    return force
+
+
+def _rest_squared(rest: float | str, initial: float) -> float:
+    return initial if rest == "initial" else rest * rest
+
+
+def _bond_weight(square: float, rest_squared: float) -> float:
+    return 1.0 - rest_squared * (1.0 / square if square else math.inf)
+
+
+def _collision_weight(square: float) -> float:
+    return min(0.0, 1.0 - 4.0 * (1.0 / square if square else math.inf))
+
+
+def _jittered(placed: list[Vector], jitter: Data | None) -> list[Vector]:
+    if jitter is None:
+        return placed
+    uniform = random.Random(jitter["seed"]).random
+    return [tuple(part + jitter["amplitude"] * (2.0 * uniform() - 1.0) for part in vector) for vector in placed]
+
+
+def _sum(vectors: list[Vector]) -> Vector:
+    total = (0.0, 0.0, 0.0)
+    for vector in vectors:
+        total = add(total, vector)
+    return total

@@ -1,0 +1,49 @@
+"""From a scene written as Python data, or a scene file, to states; knows no expectations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from atomsim.compiler import compile_scene
+from atomsim.core.digest import state_digest
+from atomsim.core.model import Model, State
+from atomsim.core.stepper import NumpyStepper
+from atomsim.scene.language import Scene
+from atomsim.scene.loader import load
+
+SCENES = Path(__file__).parents[2] / "scenes"
+
+PAPER_SCENES = ["rods", "rod-thread", "threads", "balls", "ring", "ring-elastic", "ring-soft"]
+
+
+def scene_of(groups: dict[str, Any], time_step: float = 0.05, **sections: Any) -> Scene:
+    """Validate a scene written as Python data."""
+    return Scene.model_validate({"atomsim": 1, "time_step": time_step, "rounds": 100, "groups": groups, **sections})
+
+
+def paper_scene(name: str) -> Scene:
+    """Load one of the seven scenes of the paper."""
+    return load(SCENES / f"{name}.yaml").scene
+
+
+def compiled(groups: dict[str, Any], time_step: float = 0.05, **sections: Any) -> tuple[Model, State]:
+    """Compile a scene written as Python data."""
+    return compile_scene(scene_of(groups, time_step, **sections))
+
+
+def after(model: Model, state: State, n_rounds: int) -> State:
+    """Return the state so many rounds later."""
+    stepper = NumpyStepper(model, state)
+    stepper.advance(n_rounds)
+    return stepper.state()
+
+
+def digest_of(state: State) -> str:
+    """Return the digest of a state."""
+    return state_digest(state.position, state.velocity)
+
+
+def atoms_at(*positions: tuple[float, float, float], **keys: Any) -> dict[str, Any]:
+    """Write a group of atoms at given places."""
+    return {"shape": "atoms", "positions": positions, **keys}
