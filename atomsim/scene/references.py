@@ -20,16 +20,14 @@ def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
         data: the plain data of a scene without nulls; what is malformed is left to validation.
         source: the places of the values.
     """
-    return list(_unknown_groups(data, source))
-
-
-def _unknown_groups(data: dict[str, Any], source: Source) -> Iterator[Problem]:
     groups = list(_mapping(data.get("groups")))
     if not groups:
-        return
-    for path, name in [*_selected(data), *_colored(data)]:
-        if name not in groups and name != "all":
-            yield source.problem(path, f"there is no group `{readable(name)}`; {meant(name, groups, 'the groups are')}")
+        return []
+    return [
+        source.problem(path, f"there is no group `{readable(name)}`; {meant(name, groups, 'the groups are')}")
+        for path, name in [*_selected(data), *_colored(data)]
+        if name not in groups and name != "all"
+    ]
 
 
 def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
