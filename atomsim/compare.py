@@ -8,7 +8,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from atomsim.core.model import Floats, Frame, GroupSpan
+from atomsim.core.model import Floats, Frame, GroupSpan, atom_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +80,3 @@ def _apart(left: Floats, right: Floats) -> Floats:
     same = (left == right) | (np.isnan(left) & np.isnan(right))
     apart[same] = 0.0
     return apart
-
-
-def atom_name(atom: int, groups: Sequence[GroupSpan]) -> str:
-    """Write an atom as a selection does, with its number: `left[3] (atom 3)`."""
-    group = next(group for group in groups if group.start <= atom < group.stop)
-    return f"{group.name}[{atom - group.start}] (atom {atom})"

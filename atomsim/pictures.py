@@ -8,8 +8,8 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from atomsim.errors import InputError
 from atomsim.drawing import Row, View, atom_color, compose, frames_to
+from atomsim.errors import InputError
 from atomsim.scene import loads
 from atomsim.trajectory import Trajectory
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
 from atomsim.compiler import compile_scene
+from atomsim.core.forecast import forecast
+from atomsim.core.memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
-from atomsim.errors import BlowUpError
+from atomsim.errors import BlowUpError, RunError
 from atomsim.scene import LoadedScene, loads
-from atomsim.trajectory import End, Header, Recorder
+from atomsim.trajectory import End, Header, Recorder, trajectory_bytes
 
 Report: TypeAlias = Callable[[int, int], None]
 """Called with the round reached and the round to reach, at the start and then several times a second."""
@@ -51,6 +54,7 @@ def run(
     replace: bool = False,
     compress: bool = False,
     report: Report | None = None,
+    warn: Callable[[str], None] | None = None,
 ) -> Outcome:
     """Simulate a loaded scene and record its trajectory.
 
@@ -60,6 +64,7 @@ def run(
         replace: whether an older trajectory of that name may go.
         compress: whether to write a smaller file, slowly.
         report: hears how far the run is.
+        warn: hears, before the run begins, what it is likely to do wrong.
 
     Raises:
         SceneError: the scene does not compile.
@@ -68,6 +73,9 @@ def run(
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
     model, state = compile_scene(scene.scene, scene.source)
+    if warn is not None:
+        for warning in forecast(model, state):
+            warn(warning)
     header = Header.of(
         model,
         scene_text=scene.source.text,
@@ -77,6 +85,7 @@ def run(
         record_every=scene.scene.record_every,
         compress=compress,
     )
+    _require_disk(Path(path), header)
     with Recorder(Path(path), header, replace=replace) as recorder:
         return _record(recorder, model, state, report)
 
@@ -100,6 +109,20 @@ def resume(path: str | os.PathLike[str], *, rounds: int | None = None, report: R
         loaded = loads(recorder.header.scene, recorder.header.scene_name)
         model, first = compile_scene(loaded.scene, loaded.source)
         return _record(recorder, model, recorder.state or first, report)
+
+
+def _require_disk(path: Path, header: Header) -> None:
+    """Refuse a run whose frames do not fit on the disk; while the file is built they are there twice."""
+    needed = 2 * trajectory_bytes(header.n_atoms, header.rounds, header.record_every)
+    folder = path.absolute().parent
+    if not folder.is_dir():
+        return  # the recorder says so better
+    free = shutil.disk_usage(folder).free
+    if needed > free:
+        raise RunError(
+            f"{path}: needs {readable_bytes(needed)} of disk while it is written, and {readable_bytes(free)} are free; "
+            f"record fewer frames with a larger record_every"
+        )
 
 
 def _record(recorder: Recorder, model: Model, state: State, report: Report | None) -> Outcome:

@@ -9,29 +9,29 @@ from typing import TYPE_CHECKING
 from atomsim.core.bonds import bond_forms
 from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.forces import held_atoms
+from atomsim.core.forecast import forecast
 from atomsim.core.memory import readable_bytes
-from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model
+from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model, State
+from atomsim.core.stiffness import largest_time_step
+from atomsim.trajectory import trajectory_bytes
 
 if TYPE_CHECKING:
     from atomsim.trajectory import Trajectory
 
-BYTES_PER_ATOM_AND_FRAME = 48
-"""Position and velocity, three float64 each."""
 
-BYTES_PER_FRAME = 256
-"""What a frame takes besides its atoms: digest, observables."""
-
-
-def describe_model(model: Model, rounds: int, record_every: int) -> list[str]:
+def describe_model(model: Model, state: State, rounds: int, record_every: int) -> list[str]:
     """Return what a scene holds and what running it takes.
 
     Args:
         model: the compiled scene.
+        state: its first state.
         rounds: iteration rounds to run.
         record_every: rounds between two frames.
     """
     n_frames = (rounds - 1) // record_every + 2
-    size = n_frames * (model.n_atoms * BYTES_PER_ATOM_AND_FRAME + BYTES_PER_FRAME)
+    size = trajectory_bytes(model.n_atoms, rounds, record_every)
+    limit = largest_time_step(model, state)
+    stable = [] if limit == math.inf else [f"stable below {limit:.3g}"]
     n_bonds = sum(table.first.size for table in model.bonds)
     n_pairs = sum(n_collision_pairs(table) for table in model.collisions)
     held = held_atoms(model.forces)
@@ -40,9 +40,14 @@ def describe_model(model: Model, rounds: int, record_every: int) -> list[str]:
         _line("bonds", f"{n_bonds:,}", (_bonds(table, held) for table in model.bonds)),
         _line("collisions", f"{n_pairs:,} pairs", (_collisions(table) for table in model.collisions)),
         _line("forces", f"{len(model.forces)}", (f"{f.origin.name} on {f.atoms.size:,}" for f in model.forces)),
-        _line("run", f"{rounds:,} rounds of τ = {model.time_step:g}", ()),
+        _line(
+            "run",
+            f"{rounds:,} rounds of τ = {model.time_step:g}",
+            () if limit == math.inf else (f"stable below {limit:.3g}",),
+        ),
         _line("record", f"{n_frames:,} frames, {readable_bytes(size)}", ()),
         _line("memory", f"about {readable_bytes(_memory(model))}", ()),
+        *(f"  warning: {warning}" for warning in forecast(model, state)),
     ]
 
 

@@ -34,13 +34,14 @@ def check(
     for path in scenes:
         try:
             loaded = load(path, settings or ())
-            model, _ = compile_scene(loaded.scene, loaded.source)
+            model, state = compile_scene(loaded.scene, loaded.source)
         except SceneError as error:
             n_wrong += 1
             print(error, file=sys.stderr)
         else:
-            title = f": {loaded.scene.title}" if loaded.scene.title else ""
-            print("\n".join([f"{path}{title}", *describe_model(model, loaded.scene.rounds, loaded.scene.record_every)]))
+            scene = loaded.scene
+            print(f"{path}: {scene.title}" if scene.title else path)
+            print("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
     if n_wrong:
         raise typer.Exit(2)
 

@@ -38,8 +38,8 @@ def render(
     atomsim render rods.h5 rod-thread.h5 threads.h5 -o figure1.png
     """
     from atomsim import pictures
-    from atomsim.errors import InputError
     from atomsim.drawing.files import is_our_picture
+    from atomsim.errors import InputError
 
     wanted = None if rounds is None else _rounds(rounds)
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")

@@ -66,7 +66,14 @@ def run(
             from atomsim.scene import load
 
             changes = [*(settings or []), *([] if rounds is None else [f"rounds={rounds}"])]
-            outcome = record.run(load(scene, changes), output, replace=force, compress=compress, report=report)
+            outcome = record.run(
+                load(scene, changes),
+                output,
+                replace=force,
+                compress=compress,
+                report=report,
+                warn=None if quiet else _warn,
+            )
         progress.clear()
     if wish.signal_number is not None and outcome.end.kind == "interrupted":
         print(
@@ -94,6 +101,10 @@ def recover(
     rebuild(trajectory)
     with Trajectory(trajectory) as frames:
         print(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")
+
+
+def _warn(warning: str) -> None:
+    print(f"warning: {warning}", file=sys.stderr)
 
 
 def _summarise(outcome: Outcome, seconds: float) -> None:

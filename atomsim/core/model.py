@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -34,6 +35,12 @@ class GroupSpan:
     stop: int
     color: str
     origin: Origin
+
+
+def atom_name(atom: int, groups: Sequence[GroupSpan]) -> str:
+    """Write an atom as a selection does, with its number: `left[3] (atom 3)`."""
+    group = next(group for group in groups if group.start <= atom < group.stop)
+    return f"{group.name}[{atom - group.start}] (atom {atom})"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

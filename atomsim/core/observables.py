@@ -40,7 +40,7 @@ class Observer:
             squared = squared_distance(position[:, first], position[:, second])
             squared = squared[squared < CONTACT_SQUARED]
             contacts += squared.size
-            collisions += float(_potential(squared, CONTACT_SQUARED).sum())
+            collisions += float(potential(squared, CONTACT_SQUARED).sum())
         return Observables(
             kinetic_energy=0.5 * float((velocity * velocity).sum()),
             potential_energy_bonds=float(bonds) / self._time_step,
@@ -54,10 +54,10 @@ class Observer:
 def _bond_energy(table: BondTable, position: Floats) -> float:
     """Return Σ U over the bonds of a table."""
     squared = squared_distance(np.take(position, table.first, axis=1), np.take(position, table.second, axis=1))
-    return float(_potential(squared, table.rest_squared).sum())
+    return float(potential(squared, table.rest_squared).sum())
 
 
-def _potential(squared: Floats, rest_squared: Floats | float) -> Floats:
+def potential(squared: Floats, rest_squared: Floats | float) -> Floats:
     """Return U = ½ (d² − r² − r² ln(d²/r²)); the logarithm's term vanishes with r."""
     ratio = squared / np.where(np.equal(rest_squared, 0.0), 1.0, rest_squared)
     energy: Floats = 0.5 * (squared - rest_squared - rest_squared * np.log(ratio))

@@ -6,8 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
-import numpy as np
-
+from atomsim.core.blowup import explain, is_sound
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Frame, Model, State
 from atomsim.core.observables import Observer
@@ -53,9 +52,10 @@ def simulate(
         Frames in order of rounds.
 
     Raises:
-        BlowUpError: the numbers left the finite; all frames before have been yielded.
+        BlowUpError: a number left the finite or an atom flew off; all frames before have been yielded.
     """
     observer = Observer(model)
+    first = state
     stepper = make_stepper(model, state)
     if report is not None:
         report(state.round_index)
@@ -66,8 +66,8 @@ def simulate(
         next_round = min(rounds, (state.round_index // record_every + 1) * record_every)
         _advance(stepper, state.round_index, next_round, report)
         before, state = state, stepper.state()
-        if not is_finite(state):
-            raise _blow_up(model, before, make_stepper)
+        if not is_sound(model, state):
+            raise _blow_up(model, first, before, make_stepper)
 
 
 def _advance(stepper: Stepper, round_index: int, stop: int, report: Callable[[int], None] | None) -> None:
@@ -95,22 +95,12 @@ def frame_of(model: Model, state: State, observer: Observer) -> Frame:
     )
 
 
-def is_finite(state: State) -> bool:
-    """Return whether every number of a state is finite; once lost, this never comes back."""
-    return bool(np.isfinite(state.position).all() and np.isfinite(state.velocity).all())
-
-
-def _blow_up(model: Model, before: State, make_stepper: MakeStepper) -> BlowUpError:
-    """Go through the rounds since the last good frame again, one by one, to find where the numbers left the finite."""
-    stepper = make_stepper(model, before)
-    state = before
-    while is_finite(state):
+def _blow_up(model: Model, first: State, sound: State, make_stepper: MakeStepper) -> BlowUpError:
+    """Go through the rounds since the last sound frame again, one by one, to find where it happened."""
+    stepper = make_stepper(model, sound)
+    while True:
         stepper.advance(1)
         state = stepper.state()
-    is_lost = ~(np.isfinite(state.position) & np.isfinite(state.velocity)).all(axis=1)
-    atom = int(np.flatnonzero(is_lost)[0])
-    group = model.group_of(atom)
-    return BlowUpError(
-        f"the simulation blew up at round {state.round_index}: atom {atom - group.start} of {group.origin} "
-        f"left the finite numbers; a smaller time_step than {model.time_step:g} is the usual remedy"
-    )
+        if not is_sound(model, state):
+            return BlowUpError(explain(model, first, sound, state))
+        sound = state

@@ -1,8 +1,8 @@
 """Trajectories: recording a run and reading it back; knows no scene, and nothing of how a run comes about."""
 
-from atomsim.trajectory.header import End, Header
+from atomsim.trajectory.header import End, Header, trajectory_bytes
 from atomsim.trajectory.reader import Frames, Trajectory
 from atomsim.trajectory.recorder import Recorder, recover
 from atomsim.trajectory.records import journal_path
 
-__all__ = ["End", "Frames", "Header", "Recorder", "Trajectory", "journal_path", "recover"]
+__all__ = ["End", "Frames", "Header", "Recorder", "Trajectory", "journal_path", "recover", "trajectory_bytes"]

@@ -16,6 +16,12 @@ from atomsim.core.model import GroupSpan, Model, Origin
 AtomNumbers: TypeAlias = NDArray[np.int32]
 """Numbers of atoms as H5MD and VMD want them: 32 bits."""
 
+BYTES_PER_ATOM = 48
+"""Position and velocity in a frame: three float64 each."""
+
+BYTES_PER_FRAME = 256
+"""What a frame takes besides: round, digest, observables."""
+
 EndKind: TypeAlias = Literal["finished", "interrupted", "blew up", "killed"]
 
 
@@ -136,3 +142,9 @@ class Header:
     def records(self, round_index: int) -> bool:
         """Tell whether a run that nothing stops keeps this round as a frame."""
         return round_index % self.record_every == 0 or round_index == self.rounds
+
+
+def trajectory_bytes(n_atoms: int, rounds: int, record_every: int) -> int:
+    """Return about how large the trajectory of a run becomes, without compression."""
+    n_frames = (rounds - 1) // record_every + 2
+    return n_frames * (n_atoms * BYTES_PER_ATOM + BYTES_PER_FRAME)

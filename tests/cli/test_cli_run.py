@@ -177,7 +177,7 @@ def test_check_describes_every_scene_and_reports_every_mistake(cli):
         "  bonds      4,830: left 2,415 (dense), right 2,415 (dense)\n"
         "  collisions 8,806 pairs: contact 4,900, own 3,906\n"
         "  forces     0\n"
-        "  run        4,000 rounds of τ = 0.01\n"
+        "  run        4,000 rounds of τ = 0.01: stable below 0.0286\n"
         "  record     401 frames, 2.8 MB\n"
         "  memory     about 60.6 MB\n"
     )

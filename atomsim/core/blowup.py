@@ -1,0 +1,90 @@
+"""When a run has blown up, and what pushed whom: a report that a designer can act on; knows no files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from atomsim.core.collisions import CONTACT_SQUARED, table_pairs_near
+from atomsim.core.forces import prepare_forces
+from atomsim.core.model import Floats, Indices, Model, Origin, State, atom_name
+from atomsim.core.near import squared_distance
+from atomsim.core.stiffness import largest_time_step
+
+FLOWN_APART = 1e6
+"""An atom that moves further than this in one round [length] is no longer part of anything."""
+
+
+def is_sound(model: Model, state: State) -> bool:
+    """Return whether every number of a state is finite and no atom has flown off."""
+    with np.errstate(all="ignore"):
+        fastest = float(np.abs(state.velocity).max()) * model.time_step  # NaN and infinity pass through
+    return bool(fastest <= FLOWN_APART) and bool(np.isfinite(state.position).all())
+
+
+def explain(model: Model, first: State, before: State, after: State) -> str:
+    """Say what happened in the round from a sound state to one that is not.
+
+    Args:
+        model: the compiled scene.
+        first: where the run began.
+        before: the last sound state.
+        after: the state one round later.
+
+    Returns:
+        A few lines: round, atom and group; the declaration that pushed it hardest, and against which atom; the largest
+        time step that the stiffness allows; what to change.
+    """
+    with np.errstate(all="ignore"):
+        atom = _first_lost(after)
+        size, origin, partner = max(_pushes(model, before, atom), key=lambda push: push[0], default=(0.0, None, None))
+        limit = min(largest_time_step(model, state) for state in (first, before))
+    lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} flew off"]
+    if origin is not None:
+        against = f", against {atom_name(partner, model.groups)}" if partner is not None else ""
+        lines.append(f"  pushed hardest by {origin}{against}, with an impulse of {size:.3g} in one round")
+    if model.time_step >= limit:
+        lines.append(f"  time_step is {model.time_step:g}; the stiffness of the scene allows less than {limit:.3g}")
+        lines.append("  remedy: a smaller time_step, fewer bonds per atom, or damping")
+    else:
+        lines.append(
+            f"  time_step {model.time_step:g} is below {limit:.3g}, the limit of the stiffness: look at speeds"
+        )
+        lines.append("  remedy: weaker external forces, lower velocities, or a smaller time_step")
+    return "\n".join(lines)
+
+
+def _first_lost(state: State) -> int:
+    """Return the first atom that is not finite, or else the fastest."""
+    is_lost = ~(np.isfinite(state.position) & np.isfinite(state.velocity)).all(axis=1)
+    return int(is_lost.argmax()) if is_lost.any() else int(np.abs(state.velocity).max(axis=1).argmax())
+
+
+def _pushes(model: Model, state: State, atom: int) -> Iterator[tuple[float, Origin, int | None]]:
+    """Yield the strongest single force of every declaration on an atom: its size, where from, and the partner."""
+    position = np.ascontiguousarray(state.position.T)
+    velocity = np.ascontiguousarray(state.velocity.T)
+    for table in model.bonds:
+        yield from _strongest(table.origin, position, atom, table.first, table.second, table.rest_squared)
+    for collision in model.collisions:
+        first, second = table_pairs_near(collision, position, 2.0)
+        rest_squared = np.full(first.size, CONTACT_SQUARED)
+        yield from _strongest(collision.origin, position, atom, first, second, rest_squared)
+    for force in model.forces:
+        impulse = np.zeros_like(position)
+        for apply in prepare_forces([force]):
+            apply(state.round_index, position, velocity, impulse)
+        yield float(np.sqrt((impulse[:, atom] * impulse[:, atom]).sum())), force.origin, None
+
+
+def _strongest(
+    origin: Origin, position: Floats, atom: int, first: Indices, second: Indices, rest_squared: Floats
+) -> Iterator[tuple[float, Origin, int | None]]:
+    """Yield the strongest pair force of a table on an atom, if it has any."""
+    mine = np.flatnonzero((first == atom) | (second == atom))
+    if mine.size:
+        squared = squared_distance(position[:, first[mine]], position[:, second[mine]])
+        size = np.abs(1.0 - rest_squared[mine] / squared) * np.sqrt(squared)
+        worst = int(np.argmax(size))
+        yield float(size[worst]), origin, int(first[mine][worst] + second[mine][worst] - atom)
