@@ -150,8 +150,8 @@ def _in_space(places: Indices) -> Floats:
 def _why_no_pairs(bonds: Bonds) -> tuple[str, str]:
     """Say why a declaration binds nothing."""
     if isinstance(bonds, DistanceThresholdBonds):
-        unit = "grid steps" if bonds.metric == "grid" else "length units"
-        return "threshold", f"nothing is bound: no two atoms are nearer than {bonds.threshold:g} {unit}"
+        where = " on the grid" if bonds.metric == "grid" else ""
+        return "threshold", f"nothing is bound: no two atoms are less than {bonds.threshold:g} apart{where}"
     return (
         "within" if bonds.within is not None else "between",
         "nothing is bound: there are no two different atoms here",

@@ -1,0 +1,119 @@
+"""The three forms of bonds: which is chosen, and that larger tables come to the same bits in each."""
+
+from __future__ import annotations
+
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from support.running import atoms_at, compiled
+
+from atomsim.core import bonds
+from atomsim.core.bonds import bond_forms
+from atomsim.core.model import BondTable, Floats, Indices, Origin
+
+ORIGIN = Origin("bonds", "b", "<scene>", 1)
+
+
+def table_of(group: dict[str, Any], **rule: Any) -> BondTable:
+    model, _ = compiled({"g": group}, bonds={"b": {"within": "g", **rule}})
+    return model.bonds[0]
+
+
+def random_table(n_atoms: int, n_pairs: int, seed: int) -> BondTable:
+    random = np.random.default_rng(seed)
+    key = np.unique(np.sort(random.integers(0, n_atoms, (n_pairs, 2)), axis=1) @ [n_atoms, 1])
+    first, second = key // n_atoms, key % n_atoms
+    apart = first != second
+    return BondTable(ORIGIN, first[apart], second[apart], random.uniform(0, 3, apart.sum()))
+
+
+ROD = table_of({"shape": "string", "count": 70, "step": [0.3, 0, 0]}, rule="all-pairs")
+LONG_ROD = table_of({"shape": "string", "count": 230, "step": [0.3, 0, 0]}, rule="all-pairs")
+SURFACE = table_of(
+    {"shape": "plane", "counts": [17, 17], "step_x": [1, 0, 0], "step_y": [0, 1, 0]},
+    rule="distance-threshold",
+    threshold=2,
+)
+TANGLE = random_table(200, 1500, 1)
+NEARLY_ALL = random_table(40, 2500, 2)
+
+
+def forms_of(table: BondTable) -> list[str]:
+    return [form.name for form in bond_forms(table)]
+
+
+def subtotal(table: BondTable, position: Floats, resting: Indices | None = None) -> Floats:
+    total = np.zeros_like(position)
+    for form in bond_forms(table, resting):
+        total[:, form.atoms] += form.subtotal(position)
+    return total
+
+
+def in_plain_loops(table: BondTable, position: Floats) -> Floats:
+    """Sum pair after pair, as the convention says."""
+    total = np.zeros_like(position)
+    for i, k, rest_squared in zip(table.first, table.second, table.rest_squared, strict=True):
+        dx, dy, dz = position[:, k] - position[:, i]
+        weight = 1.0 - rest_squared * (1.0 / ((dx * dx + dy * dy) + dz * dz))
+        force = np.array([weight * dx, weight * dy, weight * dz])
+        total[:, i] += force
+        total[:, k] -= force
+    return total
+
+
+def test_the_form_suits_the_table() -> None:
+    assert forms_of(ROD) == ["dense"]
+    assert forms_of(SURFACE) == ["offset"]
+    assert forms_of(TANGLE) == ["general"]
+    assert forms_of(NEARLY_ALL) == ["dense"]
+    assert forms_of(random_table(10, 5, 3)) == ["general"]
+    assert forms_of(BondTable(ORIGIN, TANGLE.first[:0], TANGLE.second[:0], TANGLE.rest_squared[:0])) == []
+
+
+def test_groups_in_one_table_get_a_form_each() -> None:
+    model, _ = compiled(
+        {
+            "rod": {"shape": "string", "count": 40, "step": [0.3, 0, 0]},
+            "idle": atoms_at((9, 9, 9)),
+            "ring": {"shape": "ring", "count": 60, "radius": 4},
+        },
+        bonds={"b": {"within": ["rod", "ring"], "rule": "all-pairs"}},
+    )
+    forms = bond_forms(model.bonds[0])
+    assert [form.atoms for form in forms] == [slice(0, 40), slice(41, 101)]
+
+
+@pytest.mark.parametrize(
+    "thresholds", [{"DENSE_FILL": 0.0}, {"DENSE_FILL": 2.0, "RUN_PAIRS": 0}, {"DENSE_FILL": 2.0, "RUN_PAIRS": 10**9}]
+)
+@pytest.mark.parametrize(
+    "table", [ROD, LONG_ROD, SURFACE, TANGLE, NEARLY_ALL], ids=["rod", "long rod", "surface", "tangle", "nearly all"]
+)
+def test_every_form_is_the_plain_loop(table: BondTable, thresholds: dict[str, float]) -> None:
+    position = np.random.default_rng(7).normal(size=(3, int(table.second.max()) + 3))
+    with patch.multiple(bonds, FEW_PAIRS=0, **thresholds):
+        found = subtotal(table, position)
+    assert np.array_equal(found, in_plain_loops(table, position))
+
+
+def test_a_long_rod_is_cut_into_tiles() -> None:
+    (form,) = bond_forms(LONG_ROD)
+    assert isinstance(form, bonds.DenseForm)
+    assert len(form._tiles) > 1
+
+
+def test_pairs_between_two_resting_atoms_are_left_out() -> None:
+    position = np.random.default_rng(3).normal(size=(3, 70))
+    resting = np.arange(0, 50)
+    full, cut = subtotal(ROD, position), subtotal(ROD, position, resting)
+    assert np.array_equal(cut[:, 50:], full[:, 50:])
+    assert not np.array_equal(cut[:, :50], full[:, :50])
+    assert bond_forms(ROD, np.arange(70)) == []
+
+
+def test_a_million_scattered_pairs_find_their_form_quickly() -> None:
+    """Offsets are sorted once; looking for each of them in turn would take minutes."""
+    table = random_table(300_000, 1_000_000, 4)
+    assert forms_of(table) == ["general"]

@@ -1,0 +1,296 @@
+"""What compiling comes to, and every message it has for a scene that makes no sense."""
+
+from __future__ import annotations
+
+import random
+import tracemalloc
+from typing import Any
+
+import numpy as np
+import pytest
+from support.running import atoms_at, compiled, scene_of
+
+from atomsim.compiler import compile as compiler
+from atomsim.compiler import compile_scene
+from atomsim.core import near
+from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
+from atomsim.errors import SceneError
+from atomsim.scene.loader import loads
+
+PAIR = {"pair": atoms_at((0, 0, 0), (1, 0, 0))}
+
+
+def mistakes(groups: dict[str, Any], **sections: Any) -> list[str]:
+    """Return path and message of every mistake."""
+    with pytest.raises(SceneError) as error:
+        compiled(groups, **sections)
+    return [f"{problem.path}: {problem.message}" for problem in error.value.problems]
+
+
+def test_origins_are_the_lines_of_the_declarations() -> None:
+    text = (
+        "atomsim: 1\ntime_step: 0.1\nrounds: 1\ngroups:\n  a: {shape: string, count: 3, step: [1, 0, 0]}\n"
+        "bonds:\n  b: {within: a, rule: neighbour}\n\n  c: {within: a, rule: all-pairs}\n"
+        "collisions:\n  d: {within: a}\nforces:\n  e: {kind: hold}\n"
+    )
+    loaded = loads(text, "here.yaml")
+    model, _ = compile_scene(loaded.scene, loaded.source)
+    origins = [entry.origin for entry in (*model.groups, *model.bonds, *model.collisions, *model.forces)]
+    assert [str(origin) for origin in origins] == [
+        "groups.a (here.yaml:5)",
+        "bonds.b (here.yaml:7)",
+        "bonds.c (here.yaml:9)",
+        "collisions.d (here.yaml:11)",
+        "forces.e (here.yaml:13)",
+    ]
+
+
+def test_mistakes_are_told_together_with_their_places_in_the_order_of_the_file() -> None:
+    text = (
+        "atomsim: 1\ntime_step: 0.1\nrounds: 1\ngroups:\n  a: {shape: string, count: 3, step: [1, 0, 0]}\n"
+        "forces:\n  late: {kind: hold, acts_on: 'a[7]'}\n"
+        "bonds:\n  far: {within: a, rule: distance-threshold, threshold: 0.5}\n"
+    )
+    loaded = loads(text, "here.yaml")
+    with pytest.raises(SceneError) as error:
+        compile_scene(loaded.scene, loaded.source)
+    assert str(error.value) == (
+        "here.yaml:7:3: forces.late: `a[7]` is out of range: a has 3 there, 0 to 2\n"
+        "here.yaml:9:46: bonds.far.threshold: nothing is bound: no two atoms are less than 0.5 apart"
+    )
+
+
+@pytest.mark.parametrize(
+    ("bonds", "message"),
+    [
+        ({"within": "dot", "rule": "all-pairs"}, "within: nothing is bound: there are no two different atoms here"),
+        (
+            {"between": ["dot", "dot"], "rule": "all-pairs"},
+            "between: nothing is bound: there are no two different atoms here",
+        ),
+        (
+            {"within": "pair", "rule": "distance-threshold", "threshold": 1},
+            "threshold: nothing is bound: no two atoms are less than 1 apart",
+        ),
+        (
+            {"within": "floor", "rule": "distance-threshold", "threshold": 1, "metric": "grid"},
+            "threshold: nothing is bound: no two atoms are less than 1 apart on the grid",
+        ),
+        (
+            {"within": "pair", "rule": "distance-threshold", "threshold": 2, "metric": "grid"},
+            "metric: `metric: grid` needs a plane or a block, and `pair` is neither",
+        ),
+        (
+            {"between": ["floor", "pair"], "rule": "distance-threshold", "threshold": 2, "metric": "grid"},
+            "metric: `metric: grid` counts steps inside one group; it goes with `within`",
+        ),
+        (
+            {"within": "pair", "rule": "pairs", "pairs": [[0, 1], [1, 2]]},
+            "pairs.1: index 2 is out of range; the atoms here are numbered 0 to 1",
+        ),
+        (
+            {"between": ["pair", "dot"], "rule": "pairs", "pairs": [[1, 1]]},
+            "pairs.0: index 1 is out of range; the atoms here are numbered 0 to 0",
+        ),
+        (
+            {"within": "pair", "rule": "pairs", "pairs": [[0, 1], [1, 1]]},
+            "pairs.1: [1, 1] would bind an atom to itself",
+        ),
+    ],
+)
+def test_bonds_that_make_no_sense(bonds: dict[str, Any], message: str) -> None:
+    floor = {"shape": "plane", "counts": [2, 2], "step_x": [1, 0, 0], "step_y": [0, 1, 0], "centre": [0, 0, 9]}
+    groups = {**PAIR, "dot": atoms_at((5, 5, 5)), "floor": floor}
+    assert mistakes(groups, bonds={"b": bonds}) == [f"bonds.b.{message}"]
+
+
+@pytest.mark.parametrize(
+    "collisions",
+    [{"within": "pair[0]"}, {"within": "pair", "min_gap": 2}, {"between": ["pair[0]", "pair[0]"]}],
+)
+def test_collisions_of_no_two_atoms(collisions: dict[str, Any]) -> None:
+    message = "collisions.c: nothing can collide: there are no two different atoms here"
+    assert mistakes(PAIR, collisions={"c": collisions}) == [message]
+
+
+def test_bound_atoms_at_the_same_place() -> None:
+    groups = {"a": atoms_at((1, 1, 1), (0, 0, 0)), "b": atoms_at((1, 1, 1))}
+    bonds = {"b": {"between": ["a", "b"], "rule": "all-pairs"}}
+    assert mistakes(groups, bonds=bonds) == ["bonds.b: a[0] and b[0] are bound but start at the same place"]
+    groups["b"] = atoms_at((0, 0, 0), (1, 1, 1))
+    assert mistakes(groups, bonds=bonds, jitter={"amplitude": 1e-9}) == [
+        "bonds.b: a[0] and b[1] are bound but start at the same place (and so do others)"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("collisions", "pair"),
+    [
+        ({"within": "a"}, "a[1] and a[3]"),
+        ({"within": "a", "min_gap": 2}, "a[1] and a[3]"),
+        ({"within": "a[1:]"}, "a[1] and a[3]"),
+        ({"between": ["b", "a"]}, "b[1] and a[3]"),
+        ({"between": ["b", ["a", "b"]]}, "b[1] and a[3]"),
+        ({"among": ["a[0]", "b", "a[3:]"]}, "b[1] and a[3]"),
+        ({"between": ["a", "a"]}, "a[1] and a[3]"),
+    ],
+)
+def test_colliding_atoms_at_the_same_place(collisions: dict[str, Any], pair: str) -> None:
+    groups = {"b": atoms_at((9, 0, 0), (5, 5, 5)), "a": atoms_at((0, 0, 0), (5, 5, 5), (2, 0, 0), (5, 5, 5), (7, 7, 7))}
+    (message,) = mistakes(groups, collisions={"c": collisions})
+    assert message.removesuffix(" (and so do others)") == (
+        f"collisions.c: {pair} are set to collide but start at the same place"
+    )
+
+
+@pytest.mark.parametrize(
+    "collisions",
+    [{"within": "a", "min_gap": 3}, {"between": ["a[0]", "b"]}, {"within": ["a[:3]", "b"]}, {"between": ["b", "b"]}],
+)
+def test_atoms_at_the_same_place_that_do_not_collide_are_fine(collisions: dict[str, Any]) -> None:
+    groups = {"b": atoms_at((9, 0, 0), (5, 5, 5)), "a": atoms_at((0, 0, 0), (5, 5, 5), (2, 0, 0), (5, 5, 5), (7, 7, 7))}
+    model, _ = compiled(groups, collisions={"c": collisions})
+    assert len(model.collisions) == 1
+
+
+def test_a_crowd_at_one_place_is_told_at_once() -> None:
+    groups = {"crowd": {"shape": "string", "count": 200_000, "step": [0, 0, 0]}}
+    assert mistakes(groups, collisions={"c": {"within": "crowd"}}) == [
+        "collisions.c: crowd[0] and crowd[199999] are set to collide but start at the same place"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("groups", "message"),
+    [
+        (
+            {"a": {"shape": "string", "count": 10**12, "step": [3, 0, 0]}},
+            "groups: 1,000,000,000,000 atoms need about 600 TB of memory, and 8.0 GB are free",
+        ),
+        (
+            {"a": {"shape": "block", "counts": [10**5, 10**5, 10**5], "spacing": 3}},
+            "groups: 1,000,000,000,000,000 atoms need about 600 PB of memory, and 8.0 GB are free",
+        ),
+        (
+            {"a": {"shape": "polygon", "corners": [[0, 0, 0], [1, 0, 0], [0.5, 0, 0]], "spacing": 1e-12}},
+            "groups: 2,000,000,000,000 atoms need about 1 PB of memory, and 8.0 GB are free",
+        ),
+        (
+            {"a": {"shape": "polygon", "corners": [[0, 0, 0], [1e308, 0, 0], [-1e308, 0, 0]], "spacing": 1e-320}},
+            "groups: 3,000,000,000,000,000 atoms need about 1800 PB of memory, and 8.0 GB are free",
+        ),
+    ],
+)
+def test_absurd_numbers_of_atoms(groups: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "free_memory", lambda: 8 * 10**9)
+    assert mistakes(groups) == [message]
+
+
+MILLION = {"a": {"shape": "string", "count": 10**6, "step": [3, 0, 0]}}
+
+
+@pytest.mark.parametrize(
+    ("bonds", "message"),
+    [
+        ({"within": "a", "rule": "all-pairs"}, "499,999,500,000 bonds need about 50.0 TB"),
+        ({"within": ["a", "a"], "rule": "all-pairs"}, "999,999,000,000 bonds need about 100.0 TB"),
+        ({"between": ["a", "all"], "rule": "all-pairs"}, "1,000,000,000,000 bonds need about 100 TB"),
+        ({"within": "a", "rule": "neighbour", "reach": 10**9}, "1,000,000,000,000 bonds need about 100 TB"),
+    ],
+)
+def test_absurd_numbers_of_bonds(bonds: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "free_memory", lambda: 8 * 10**9)
+    assert mistakes(MILLION, bonds={"b": bonds}) == [f"bonds.b.rule: {message} of memory, and 8.0 GB are free"]
+
+
+def test_a_threshold_that_binds_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(near, "LARGE", 1 << 20)
+    monkeypatch.setattr(near, "free_memory", lambda: 1 << 24)
+    groups = {"a": {"shape": "string", "count": 5000, "step": [1, 0, 0]}}
+    bonds = {"b": {"within": "a", "rule": "distance-threshold", "threshold": 10**4}}
+    (message,) = mistakes(groups, bonds=bonds)
+    assert message.startswith("bonds.b: this binds too much: more than ")
+    assert message.endswith(" pairs are near each other, and the memory is full")
+
+
+def test_a_million_colliding_atoms_compile_without_their_pairs() -> None:
+    scene = scene_of(MILLION, collisions={"c": {"within": "a"}})
+    tracemalloc.start()
+    model, _ = compile_scene(scene)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    (block,) = model.collisions[0].blocks
+    assert isinstance(block, Within)
+    assert block.atoms.size == 10**6
+    assert peak < compiler.BYTES_PER_ATOM * 10**6
+
+
+@pytest.mark.parametrize(
+    "group",
+    [
+        {"shape": "string", "count": 3, "step": [1e200, 0, 0]},
+        {"shape": "string", "count": 3, "step": [1, 0, 0], "velocity": [0, 1e300, 0]},
+        {"shape": "ring", "count": 3, "radius": 1e300},
+        atoms_at((1.7e308, 0, 0), (1.7e308, 0, 0), centre=[0, 0, 0]),
+    ],
+)
+def test_numbers_too_large_to_compute_with(group: dict[str, Any]) -> None:
+    assert mistakes({"fine": atoms_at((0, 0, 0)), "a": group}) == [
+        "groups.a: its numbers are too large to compute with"
+    ]
+
+
+def test_a_jitter_too_large_to_compute_with() -> None:
+    found = mistakes({"a": atoms_at((0, 0, 0), (1, 0, 0))}, jitter={"amplitude": 1e308})
+    assert found == ["groups.a: its numbers are too large to compute with"]
+
+
+def test_jitter_is_drawn_atom_by_atom_and_only_by_its_seed() -> None:
+    _, still = compiled(PAIR)
+    _, state = compiled(PAIR, jitter={"amplitude": 0.25, "seed": 5})
+    uniform = random.Random(5).random
+    expected = [[part + 0.25 * (2 * uniform() - 1) for part in place] for place in still.position.tolist()]
+    assert state.position.tolist() == expected
+    _, other = compiled(PAIR, jitter={"amplitude": 0.25, "seed": 6})
+    assert not np.array_equal(other.position, state.position)
+
+
+def test_state_and_tables_are_read_only() -> None:
+    _, state = compiled(PAIR)
+    for array in (state.position, state.velocity):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1.0
+
+
+def test_colors_come_from_the_picture_then_the_group_then_the_palette() -> None:
+    model, _ = compiled(
+        {"a": atoms_at((0, 0, 0), color="SteelBlue"), "b": atoms_at((0, 0, 0), color="#F0a"), "c": atoms_at((0, 0, 0))},
+        render={"colors": {"a": "red"}},
+    )
+    assert [group.color for group in model.groups] == ["#ff0000", "#ff00aa", compiler.PALETTE[2]]
+    assert [model.group_of(atom).name for atom in range(3)] == ["a", "b", "c"]
+
+
+def test_among_is_every_two_groups() -> None:
+    groups = {name: atoms_at((place, 0, 0)) for place, name in enumerate("abc")}
+    model, _ = compiled(groups, collisions={"c": {"among": ["a", "b", "c"]}})
+    blocks = [block for block in model.collisions[0].blocks if isinstance(block, Between)]
+    assert [(block.left.tolist(), block.right.tolist()) for block in blocks] == [([0], [1]), ([0], [2]), ([1], [2])]
+
+
+def test_forces_keep_their_order_and_numbers() -> None:
+    model, _ = compiled(
+        {"a": atoms_at((0, 0, 0), (4, 3, 0))},
+        forces={
+            "fall": {"kind": "gravity", "impulse": [0, 0, -1]},
+            "turn": {"kind": "torque", "acts_on": "a[1]", "axis": [0, 0, 9], "magnitude": 2, "about": "a"},
+            "hang": {"kind": "tether", "target": [0, 0, 2]},
+        },
+    )
+    fall, turn, hang = model.forces
+    assert isinstance(fall, PushForce)
+    assert (fall.impulse, fall.from_round, fall.until_round, fall.atoms.tolist()) == ((0, 0, -1), 0, None, [0, 1])
+    assert isinstance(turn, TorqueForce)
+    assert (turn.axis, turn.atoms.tolist(), turn.about.tolist()) == ((0, 0, 1), [1], [0, 1])
+    assert isinstance(hang, TetherForce)
+    assert hang.rest_squared.tolist() == [4, 29]

@@ -1,0 +1,82 @@
+"""Which atoms a selection names, and what is said when it names none."""
+
+from __future__ import annotations
+
+import pytest
+
+from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
+
+SELECTIONS = Selections(
+    {
+        "ring": GroupLayout(0, 10, (10,), True),
+        "floor": GroupLayout(10, 22, (4, 3), False),
+        "brick": GroupLayout(22, 34, (2, 3, 2), False),
+    },
+    34,
+)
+
+
+@pytest.mark.parametrize(
+    ("selection", "expected"),
+    [
+        (("ring",), list(range(10))),
+        (("ring[0]",), [0]),
+        (("ring[-1]",), [9]),
+        (("ring[2:4]",), [2, 3]),
+        (("ring[:2]",), [0, 1]),
+        (("ring[::4]",), [0, 4, 8]),
+        (("ring[-3:]",), [7, 8, 9]),
+        (("ring[8:99]",), [8, 9]),
+        (("floor[0, :]",), [10, 14, 18]),
+        (("floor[:, 0]",), [10, 11, 12, 13]),
+        (("floor[-1, -1]",), [21]),
+        (("floor[1:3, ::2]",), [11, 12, 19, 20]),
+        (("floor[5]",), [15]),
+        (("brick[1, 2, 0]",), [27]),
+        (("brick[:, 1, :]",), [24, 25, 30, 31]),
+        (("all",), list(range(34))),
+        (("ring[4:6]", "ring[5]", "floor[0, 0]"), [4, 5, 10]),
+        (("floor[0, 0]", "ring[1]"), [1, 10]),
+    ],
+)
+def test_atoms_ascend_without_duplicates(selection: tuple[str, ...], expected: list[int]) -> None:
+    assert SELECTIONS.atoms(selection).tolist() == expected
+
+
+@pytest.mark.parametrize(
+    ("expression", "message"),
+    [
+        ("rong", "there is no group `rong`; there are ring, floor, brick"),
+        ("ring[10]", "`ring[10]` is out of range: ring has 10 there, 0 to 9"),
+        ("ring[-11]", "`ring[-11]` is out of range: ring has 10 there, 0 to 9"),
+        ("ring[10:]", "`ring[10:]` selects no atoms: ring has 10 there, 0 to 9"),
+        ("floor[4, 0]", "`floor[4, 0]` is out of range: floor has 4 there, 0 to 3"),
+        ("floor[0, 3:]", "`floor[0, 3:]` selects no atoms: floor has 3 there, 0 to 2"),
+        ("floor[0, 0, 0]", "`floor[0, 0, 0]` has 3 indices, but floor is 4 × 3 atoms (one or 2 indices)"),
+        ("ring[0, 0]", "`ring[0, 0]` has 2 indices, but ring is 10 atoms (one index)"),
+    ],
+)
+def test_what_names_no_atoms_is_told(expression: str, message: str) -> None:
+    with pytest.raises(SelectionError) as error:
+        SELECTIONS.atoms((expression,))
+    assert str(error.value) == message
+
+
+def test_grid_places_are_x_first() -> None:
+    places = SELECTIONS.grid_places("floor[2:, 1]")
+    assert places is not None
+    assert places.tolist() == [[2, 1], [3, 1]]
+    places = SELECTIONS.grid_places("brick[1, 2, 0]")
+    assert places is not None
+    assert places.tolist() == [[1, 2, 0]]
+
+
+@pytest.mark.parametrize("expression", ["ring", "ring[3]", "all"])
+def test_only_planes_and_blocks_have_a_grid(expression: str) -> None:
+    assert SELECTIONS.grid_places(expression) is None
+
+
+def test_only_a_name_alone_is_a_whole_group() -> None:
+    assert SELECTIONS.whole_group("ring") == GroupLayout(0, 10, (10,), True)
+    assert SELECTIONS.whole_group("ring[:]") is None
+    assert SELECTIONS.whole_group("all") is None
