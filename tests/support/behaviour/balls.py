@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from support.behaviour.runs import Run
 
 from atomsim.core.model import Floats, Indices
+from support.behaviour.runs import Run
+from support.behaviour.surfaces import best_plane, depth_below_rim
 
 CONTACT = 2.0
 """Two atoms touch below this distance: the sum of their radii."""
@@ -53,13 +54,8 @@ def rims(run: Run) -> dict[str, Indices]:
 
 def depth_under(run: Run, ball: str, round_index: int) -> float:
     """Return how far the surface under a ball lies below the plane that fits its four rims best."""
-    frame = run.frame(round_index)
-    surface = run.path("surface")[frame]
-    x, y, z = surface.T
-    is_rim = np.logical_or.reduce(list(rims(run).values()))
-    design = np.column_stack([x, y, np.ones_like(x)])
-    plane, *_ = np.linalg.lstsq(design[is_rim], z[is_rim], rcond=None)
-    return float((design @ plane - z)[_nearest(run, ball)[frame]])
+    surface, frame = run.path("surface"), run.frame(round_index)
+    return float(depth_below_rim(surface[0], surface[frame], up=2)[_nearest(run, ball)[frame]])
 
 
 def slide(run: Run, ball: str, from_round: int, touching: float) -> Floats:
@@ -77,9 +73,7 @@ def slide(run: Run, ball: str, from_round: int, touching: float) -> Floats:
 
 def downhill(run: Run, round_index: int) -> Floats:
     """Return the direction (x, y) in which the surface as a whole descends, with its slope as length."""
-    x, y, z = run.path("surface")[run.frame(round_index)].T
-    plane, *_ = np.linalg.lstsq(np.column_stack([x, y, np.ones_like(x)]), z, rcond=None)
-    return -plane[:2]
+    return -best_plane(run.path("surface")[run.frame(round_index)], up=2)[:2]
 
 
 def fell_off(run: Run, ball: str) -> int | None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from support.behaviour.runs import Run
 
 from atomsim.core.model import Floats
+from support.behaviour.runs import Run
+from support.behaviour.surfaces import depth_below_rim
 
 
 def on_ground(run: Run) -> slice:
@@ -64,8 +65,8 @@ def flex_bound(run: Run) -> float:
     radius = np.linalg.norm(ring - ring.mean(axis=0), axis=1).max()
     weight = next(force for force in run.model.forces if force.origin.name == "weight")
     height = run.centre("ring")[on_ground(run), 1]
-    energy = -weight.impulse[1] * (height[0] - height.min())
-    return float(np.sqrt(2 * energy / _stiffness(run)[3]) / radius)
+    freed = -weight.impulse[1] * (height[0] - height.min())
+    return float(np.sqrt(2 * freed / _stiffness(run)[3]) / radius)
 
 
 def _stiffness(run: Run) -> Floats:
@@ -92,9 +93,4 @@ def tilt(run: Run) -> Floats:
 def cave(run: Run, round_index: int) -> float:
     """Return how far the deepest atom of the surface lies below the plane that fits its four rims best."""
     surface = run.path("surface")
-    x, y, z = surface[run.frame(round_index)].T
-    start = surface[0]
-    is_rim = ((start == start.min(axis=0)) | (start == start.max(axis=0)))[:, [0, 2]].any(axis=1)
-    design = np.column_stack([x, z, np.ones_like(x)])
-    plane, *_ = np.linalg.lstsq(design[is_rim], y[is_rim], rcond=None)
-    return float((design @ plane - y).max())
+    return float(depth_below_rim(surface[0], surface[run.frame(round_index)], up=1).max())

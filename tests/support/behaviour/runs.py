@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from support.running import SCENES
 
 from atomsim.compiler import compile_scene
 from atomsim.core.model import BondTable, Floats, Indices, Model
 from atomsim.core.simulate import simulate
 from atomsim.scene import load
+from support.running import SCENES
 
 
 @dataclass(frozen=True, eq=False)

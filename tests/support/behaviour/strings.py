@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from support.behaviour.runs import Run
 
 from atomsim.core.model import Floats
+from support.behaviour.runs import Run
 
 EVERY = 5
 """Windings and crossings are measured in every fifth frame: they change slowly and cost most."""
@@ -77,7 +77,7 @@ def crossings(run: Run) -> float:
     """Return the largest average crossing number of the two strings at any time.
 
     Seen from some direction the two strings cross so many times; this is the mean over all directions, the unsigned
-    Gauss integral, summed over pairs of straight pieces (K. Klenin, J. Langowski, Biopolymers 54 (2000) 307, method 1a).
+    Gauss integral, summed over pairs of straight pieces (Klenin and Langowski, Biopolymers 54 (2000) 307, method 1a).
     """
     return max(
         _mean_crossings(left, right)
