@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from atomsim.compiler import compile_scene
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Model, State
@@ -37,6 +39,11 @@ def after(model: Model, state: State, n_rounds: int) -> State:
     stepper = NumpyStepper(model, state)
     stepper.advance(n_rounds)
     return stepper.state()
+
+
+def is_finite(state: State) -> bool:
+    """Return whether every number of a state is finite."""
+    return bool(np.isfinite(state.position).all() and np.isfinite(state.velocity).all())
 
 
 def digest_of(state: State) -> str:
