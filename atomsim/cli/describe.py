@@ -40,11 +40,7 @@ def describe_model(model: Model, state: State, rounds: int, record_every: int) -
         _line("bonds", f"{n_bonds:,}", (_bonds(table, held) for table in model.bonds)),
         _line("collisions", f"{n_pairs:,} pairs", (_collisions(table) for table in model.collisions)),
         _line("forces", f"{len(model.forces)}", (f"{f.origin.name} on {f.atoms.size:,}" for f in model.forces)),
-        _line(
-            "run",
-            f"{rounds:,} rounds of τ = {model.time_step:g}",
-            () if limit == math.inf else (f"stable below {limit:.3g}",),
-        ),
+        _line("run", f"{rounds:,} rounds of τ = {model.time_step:g}", stable),
         _line("record", f"{n_frames:,} frames, {readable_bytes(size)}", ()),
         _line("memory", f"about {readable_bytes(_memory(model))}", ()),
         *(f"  warning: {warning}" for warning in forecast(model, state)),
