@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.collisions import CONTACT_SQUARED, NearList
-from atomsim.core.model import BondTable, Floats, Model, Observables, State
+from atomsim.core.model import BondTable, Floats, Indices, Model, Observables, State
 from atomsim.core.near import squared_distance
 
 
@@ -31,13 +31,13 @@ class Observer:
             return self._observe(state)
 
     def _observe(self, state: State) -> Observables:
-        position = np.ascontiguousarray(state.position.T)
-        velocity = state.velocity
+        position, velocity = np.ascontiguousarray(state.position.T), np.ascontiguousarray(state.velocity.T)
+        (x, y, z), (u, v, w) = position, velocity
         bonds = sum(_bond_energy(table, position) for table in self._bonds)
         self._near.update(position)
         collisions, contacts = 0.0, 0
         for first, second in self._near.pairs:
-            squared = squared_distance(position[:, first], position[:, second])
+            squared = _squared(position, first, second)
             squared = squared[squared < CONTACT_SQUARED]
             contacts += squared.size
             collisions += float(potential(squared, CONTACT_SQUARED).sum())
@@ -45,20 +45,24 @@ class Observer:
             kinetic_energy=0.5 * float((velocity * velocity).sum()),
             potential_energy_bonds=float(bonds) / self._time_step,
             potential_energy_collisions=collisions / self._time_step,
-            momentum=velocity.sum(axis=0),
-            angular_momentum=np.cross(state.position, velocity).sum(axis=0),
+            momentum=velocity.sum(axis=1),
+            angular_momentum=np.array([(y * w - z * v).sum(), (z * u - x * w).sum(), (x * v - y * u).sum()]),
             contacts=contacts,
         )
 
 
 def _bond_energy(table: BondTable, position: Floats) -> float:
     """Return Σ U over the bonds of a table."""
-    squared = squared_distance(np.take(position, table.first, axis=1), np.take(position, table.second, axis=1))
-    return float(potential(squared, table.rest_squared).sum())
+    return float(potential(_squared(position, table.first, table.second), table.rest_squared).sum())
+
+
+def _squared(position: Floats, first: Indices, second: Indices) -> Floats:
+    """Return d² of pairs; `take` gathers twice as fast as an index does."""
+    return squared_distance(np.take(position, first, axis=1), np.take(position, second, axis=1))
 
 
 def potential(squared: Floats, rest_squared: Floats | float) -> Floats:
     """Return U = ½ (d² − r² − r² ln(d²/r²)); the logarithm's term vanishes with r."""
-    ratio = squared / np.where(np.equal(rest_squared, 0.0), 1.0, rest_squared)
-    energy: Floats = 0.5 * (squared - rest_squared - rest_squared * np.log(ratio))
+    divisor = rest_squared if np.all(rest_squared) else np.where(np.equal(rest_squared, 0.0), 1.0, rest_squared)
+    energy: Floats = 0.5 * (squared - rest_squared - rest_squared * np.log(squared / divisor))
     return energy
