@@ -36,7 +36,10 @@ def build(journal: Journal, path: Path) -> None:
         RunError: there is no frame, or the file cannot be written; the message says where the frames are.
     """
     if len(journal.series) == 0:
-        raise RunError(f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet")
+        raise RunError(
+            f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet; "
+            f"to run it: atomsim run --resume {path}"
+        )
     temporary = disk.beside(path, ".tmp")
     try:
         try:
@@ -57,11 +60,16 @@ def _remedy(path: Path) -> str:
 
 def _write(journal: Journal, temporary: Path) -> None:
     with Sink(temporary) as sink, held() as let_interrupts_through:
+
+        def between_pieces() -> None:
+            sink.check()
+            let_interrupts_through()
+
         # Everything that could make two identical runs differ is switched off: times are not tracked, and the oldest
         # and newest form of the format that may be chosen are fixed.
         with h5py.File(sink, "w", libver=("earliest", "v110")) as file:
             _write_identity(file, journal.header.versions.program)
-            _write_frames(journal, file, let_interrupts_through)
+            _write_frames(journal, file, between_pieces)
             _write_observables(journal, file)
             _write_bonds(journal, file)
             _write_parameters(journal, file.create_group(PARAMETERS))
@@ -77,7 +85,7 @@ def _write_identity(file: Group, program_version: str) -> None:
     creator.attrs["version"] = np.bytes_(program_version)
 
 
-def _write_frames(journal: Journal, file: Group, let_interrupts_through: Callable[[], None]) -> None:
+def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[], None]) -> None:
     header, series = journal.header, journal.series
     atoms = file.create_group(PARTICLES)
     atoms.attrs["unit_note"] = np.bytes_(UNIT_NOTE)
@@ -95,7 +103,7 @@ def _write_frames(journal: Journal, file: Group, let_interrupts_through: Callabl
         piece = journal.rows(start, min(start + rows, len(series)))
         for name, value in values.items():
             value[start : start + len(piece)] = piece[name]
-        let_interrupts_through()
+        between_pieces()
     species = [np.full(group.stop - group.start, i, "<i4") for i, group in enumerate(header.groups)]
     atoms["mass"] = np.ones(header.n_atoms)
     atoms["species"] = np.concatenate(species)

@@ -34,13 +34,17 @@ class Sink:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         os.close(self._fd)
+        self.check()
+
+    def check(self) -> None:
+        """Raise what went wrong so far; to be called while HDF5 is not calling."""
         if self._error is not None:
             raise self._error
 
     def sync(self) -> None:
-        """See that the file is on the disk, unless it is broken already."""
-        if self._error is None:
-            os.fsync(self._fd)
+        """See that the file is on the disk."""
+        self.check()
+        os.fsync(self._fd)
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         """Move, from the start or from the end; HDF5 asks for the size this way."""

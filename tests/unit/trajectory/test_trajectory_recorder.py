@@ -261,7 +261,9 @@ def test_a_journal_without_a_frame_goes_on_from_the_beginning(tmp_path: Path, un
         pass
     with pytest.raises(RunError) as caught:
         recover(path)
-    assert str(caught.value) == f"{path}: nothing to build: its journal out.h5.part holds no frame yet"
+    assert str(caught.value) == (
+        f"{path}: nothing to build: its journal out.h5.part holds no frame yet; to run it: atomsim run --resume {path}"
+    )
     with Recorder.resume(path) as recording:
         assert recording.state is None
         go_on(recording)
