@@ -1,0 +1,111 @@
+"""Goldens catch what they are there for: a law changed by one part in 10⁹, a missing file, a silent re-recording."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from atomsim.cli import main
+from atomsim.core import bonds, collisions, stepper
+
+ROOT = Path(__file__).parents[2]
+GOLDEN = ROOT / "tests" / "golden"
+SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
+
+
+@pytest.fixture
+def cli(monkeypatch, capsys):
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["atomsim", *map(str, arguments)])
+        capsys.readouterr()
+        try:
+            main()
+        except SystemExit as end:
+            return int(end.code or 0), *capsys.readouterr()
+        return 0, *capsys.readouterr()
+
+    return run
+
+
+def test_every_shipped_scene_has_a_small_golden():
+    assert len(SCENES) >= 7
+    for scene in SCENES:
+        golden = GOLDEN / f"{scene.stem}.golden.json"
+        assert golden.stat().st_size < 400_000
+
+
+def test_a_bond_law_changed_by_one_part_in_a_billion_is_caught(cli, monkeypatch):
+    def changed(weight, rest_squared, law=bonds.weigh_bonds):
+        law(weight, rest_squared)
+        weight *= 1.0 + 1e-9
+
+    monkeypatch.setattr(bonds, "weigh_bonds", changed)
+    code, out, err = cli("golden", "check", ROOT / "scenes" / "threads.yaml", "--into", GOLDEN)
+    assert code == 1
+    assert re.search(
+        r"threads\.yaml: differs from round \d+ on; round \d+: position of \d+ of 140 atoms differs, "
+        r"first \w+\[\d+\] \(atom \d+\), most \w+\[\d+\] \(atom \d+\) by \d",
+        out,
+    ), out
+    assert err == "1 of 1 scenes differ from their goldens\n"
+
+
+def test_a_collision_law_changed_by_one_part_in_a_billion_is_caught(cli, monkeypatch):
+    assert stepper.CONTACT_SQUARED is collisions.CONTACT_SQUARED
+    monkeypatch.setattr(stepper, "CONTACT_SQUARED", 4.0 * (1.0 - 1e-9))
+    code, out, _ = cli("golden", "check", ROOT / "scenes" / "balls.yaml", "--into", GOLDEN)
+    assert code == 1
+    first_wrong = int(re.search(r"differs from round (\d+) on; round \d+: ", out)[1])
+    assert 140 <= first_wrong <= 160  # nothing touches before
+
+
+def test_a_missing_golden_is_a_failure(cli, tmp_path):
+    code, out, _ = cli("golden", "check", ROOT / "scenes" / "threads.yaml", "--into", tmp_path)
+    assert code == 1
+    assert "there is no golden" in out
+
+
+def test_recording_again_asks_for_a_reason_and_logs_it(cli, tmp_path):
+    scene = tmp_path / "pair.yaml"
+    scene.write_text(
+        "atomsim: 1\ntime_step: 0.1\nrounds: 30\ngroups:\n"
+        "  a: {shape: string, count: 2, step: [1, 0, 0], spin: {axis: z, rate: 1}}\n"
+        "bonds:\n  a: {within: a, rule: all-pairs}\n"
+    )
+    folder = tmp_path / "golden"
+    assert cli("golden", "record", scene, "--into", folder)[0] == 0
+    before = (folder / "pair.golden.json").read_bytes()
+    code, _, err = cli("golden", "record", scene, "--into", folder)
+    assert code == 2
+    assert err == f"{folder / 'pair.golden.json'} exists; say why it changes with --reason\n"
+    scene.write_text(scene.read_text().replace("0.1", "0.2"))
+    code, out, _ = cli("golden", "check", scene, "--into", folder)
+    assert (code, "differs from round 10 on; round 10: position of 2 of 2 atoms differs" in out) == (1, True)
+    assert cli("golden", "record", scene, "--into", folder, "--reason", "a longer step")[0] == 0
+    assert (folder / "pair.golden.json").read_bytes() != before
+    log = (folder / "LOG.md").read_text().splitlines()
+    assert len(log) == 2
+    assert log[0].endswith("first recording")
+    assert log[1].endswith("a longer step")
+    assert cli("golden", "check", scene, "--into", folder)[0] == 0
+
+
+@pytest.mark.parametrize("damage", ["", "{}", "[]", '{"golden": 2}', "\x00\xff"])
+def test_a_damaged_golden_is_no_golden(cli, tmp_path, damage):
+    (tmp_path / "threads.golden.json").write_text(damage, encoding="latin-1")
+    code, _, err = cli("golden", "check", ROOT / "scenes" / "threads.yaml", "--into", tmp_path)
+    assert code == 2
+    assert err.startswith(f"{tmp_path / 'threads.golden.json'}: is not a golden trajectory")
+
+
+def test_a_golden_holds_what_the_scene_gave(tmp_path):
+    shutil.copy(GOLDEN / "rods.golden.json", tmp_path)
+    document = json.loads((tmp_path / "rods.golden.json").read_text())
+    assert list(document["digests"])[:3] == ["0", "10", "20"]
+    assert len(document["digests"]) == 401
+    assert list(map(int, document["frames"])) == [0, 10, 40, 160, 640, 2560, 4000]
