@@ -15,9 +15,9 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
-from support.oracle_shapes import add, cross, place, quantise, square, sub, unit
+from support.oracle_pairs import Group, Groups, bound_pairs, colliding_pairs, rest_squared, select
+from support.oracle_shapes import Vector, add, cross, quantise, square, sub, unit
 
-Vector = tuple[float, float, float]
 Data = dict[str, Any]
 
 
@@ -128,15 +128,15 @@ class World:
         scale = force["magnitude"] / leverage
         return [(scale * x, scale * y, scale * z) for x, y, z in arms]
 
-    def _pull(self, atom: int, force: Data, rest_squared: float) -> Vector:
+    def _pull(self, atom: int, force: Data, r2: float) -> Vector:
         x, y, z = sub(force["target"], self.position[atom])
-        weight = _bond_weight(square((x, y, z)), rest_squared) if (x, y, z) != (0.0, 0.0, 0.0) else 0.0
+        weight = _bond_weight(square((x, y, z)), r2) if (x, y, z) != (0.0, 0.0, 0.0) else 0.0
         return (weight * x, weight * y, weight * z)
 
 
 def build(scene: Data) -> World:
     """Work out a world at round 0 from the plain data of a scene."""
-    groups = {name: _Group(data) for name, data in scene["groups"].items()}
+    groups = {name: Group(data) for name, data in scene["groups"].items()}
     for group, start in zip(groups.values(), itertools.accumulate(map(len, groups.values()), initial=0), strict=False):
         group.start = start
     placed = [position for group in groups.values() for position in group.position]
@@ -145,152 +145,24 @@ def build(scene: Data) -> World:
         round_index=0,
         position=_jittered(placed, scene["jitter"]),
         velocity=[velocity for group in groups.values() for velocity in group.velocity],
-        bonds=[_bonds(entry, groups, placed) for entry in scene["bonds"].values()],
-        collisions=[sorted(_collisions(entry, groups)) for entry in scene["collisions"].values()],
+        bonds=[bound_pairs(entry, groups, placed) for entry in scene["bonds"].values()],
+        collisions=[colliding_pairs(entry, groups) for entry in scene["collisions"].values()],
         forces=[_force(entry, groups, placed) for entry in scene["forces"].values()],
     )
 
 
-class _Group:
-    def __init__(self, data: Data) -> None:
-        self.data = data
-        self.start = 0
-        self.position, self.velocity = place(data)
-
-    def __len__(self) -> int:
-        return len(self.position)
-
-    @property
-    def is_closed(self) -> bool:
-        return self.data["shape"] in ("ring", "polygon")
-
-    def grid_place(self, index: int) -> tuple[int, ...]:
-        """Return where on its grid an atom stands, x first."""
-        place = []
-        for count in self.data["counts"]:
-            place.append(index % count)
-            index //= count
-        return tuple(place)
-
-
-Groups = dict[str, _Group]
-
-
-def _select(expressions: tuple[str, ...], groups: Groups) -> list[int]:
-    """Return the atoms that any of the expressions names, ascending."""
-    return sorted({atom for expression in expressions for atom in _select_one(expression, groups)})
-
-
-def _select_one(expression: str, groups: Groups) -> list[int]:
-    name, _, inside = expression.replace(" ", "").rstrip("]").partition("[")
-    if name == "all":
-        return [atom for group in groups.values() for atom in range(group.start, group.start + len(group))]
-    group = groups[name]
-    axes = [_axis(text) for text in inside.split(",")] if inside else [slice(None)]
-    if len(axes) == 1:
-        chosen = set(_range(axes[0], len(group)))
-        return [group.start + index for index in range(len(group)) if index in chosen]
-    allowed = [set(_range(axis, count)) for axis, count in zip(axes, group.data["counts"], strict=True)]
-    return [
-        group.start + index
-        for index in range(len(group))
-        if all(place in places for place, places in zip(group.grid_place(index), allowed, strict=True))
-    ]
-
-
-def _axis(text: str) -> int | slice:
-    bounds = [int(bound) if bound else None for bound in text.split(":")]
-    return slice(*bounds) if ":" in text else int(text)
-
-
-def _range(axis: int | slice, count: int) -> list[int]:
-    everything = list(range(count))
-    return everything[axis] if isinstance(axis, slice) else [everything[axis]]
-
-
-def _bonds(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int, float]]:
-    pairs = {(min(pair), max(pair)) for pair in _bound_pairs(entry, groups, placed) if pair[0] != pair[1]}
-    return [(i, k, _rest_squared(entry["rest"], square(sub(placed[k], placed[i])))) for i, k in sorted(pairs)]
-
-
-def _bound_pairs(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int]]:
-    if entry.get("between"):
-        left, right = (_select(side, groups) for side in entry["between"])
-        return _apply_rule(entry, list(itertools.product(left, right)), left, right, groups, placed)
-    found = []
-    for expression in entry["within"]:
-        atoms = _select_one(expression, groups)
-        if entry["rule"] == "neighbour":
-            found += _neighbours(entry, atoms, expression, groups)
-        else:
-            found += _apply_rule(entry, list(itertools.combinations(atoms, 2)), atoms, atoms, groups, placed)
-    return found
-
-
-def _apply_rule(
-    entry: Data, every: list[tuple[int, int]], left: list[int], right: list[int], groups: Groups, placed: list[Vector]
-) -> list[tuple[int, int]]:
-    match entry["rule"]:
-        case "all-pairs":
-            return every
-        case "pairs":
-            return [(left[i], right[k]) for i, k in entry["pairs"]]
-        case "distance-threshold":
-            limit = entry["threshold"] * entry["threshold"]
-            if entry["metric"] == "grid":
-                return [(i, k) for i, k in every if _grid_square(i, k, groups) < limit]
-            return [(i, k) for i, k in every if 0.0 < square(sub(placed[k], placed[i])) < limit]
-    raise ValueError(entry["rule"])
-
-
-def _grid_square(i: int, k: int, groups: Groups) -> int:
-    group = next(group for group in groups.values() if group.start <= i < group.start + len(group))
-    one, other = group.grid_place(i - group.start), group.grid_place(k - group.start)
-    return sum((a - b) ** 2 for a, b in zip(one, other, strict=True))
-
-
-def _neighbours(entry: Data, atoms: list[int], expression: str, groups: Groups) -> list[tuple[int, int]]:
-    closed = entry["closed"]
-    if closed is None:
-        closed = expression in groups and groups[expression].is_closed
-    found = []
-    for (one, i), (other, k) in itertools.combinations(enumerate(atoms), 2):
-        gap = other - one
-        if gap <= entry["reach"] or (closed and len(atoms) - gap <= entry["reach"]):
-            found.append((i, k))
-    return found
-
-
-def _collisions(entry: Data, groups: Groups) -> set[tuple[int, int]]:
-    found: set[tuple[int, int]] = set()
-    if entry["within"]:
-        for expression in entry["within"]:
-            atoms = _select_one(expression, groups)
-            numbered = itertools.combinations(enumerate(atoms), 2)
-            found |= {(i, k) for (one, i), (other, k) in numbered if other - one >= (entry["min_gap"] or 1)}
-        return found
-    sides = [_select(side, groups) for side in entry["between"] or entry["among"]]
-    for left, right in itertools.combinations(sides, 2):
-        found |= {(min(i, k), max(i, k)) for i in left for k in right if i != k}
-    return found
-
-
 def _force(entry: Data, groups: Groups, placed: list[Vector]) -> Data:
-    force = dict(entry, atoms=_select(entry["acts_on"], groups))
+    force = dict(entry, atoms=select(entry["acts_on"], groups))
     if entry["kind"] == "torque":
-        force["about_atoms"] = _select(entry["about"], groups) if entry["about"] else force["atoms"]
+        force["about_atoms"] = select(entry["about"], groups) if entry["about"] else force["atoms"]
     if entry["kind"] == "tether":
         squares = [square(sub(entry["target"], placed[atom])) for atom in force["atoms"]]
-        force["rest_squared"] = [_rest_squared(entry["rest"], initial) for initial in squares]
+        force["rest_squared"] = [rest_squared(entry["rest"], initial) for initial in squares]
     return force
 
 
-def _rest_squared(rest: float | str, initial: float) -> float:
-    return initial if rest == "initial" else rest * rest
-
-
-def _bond_weight(square: float, rest_squared: float) -> float:
-    return 1.0 - rest_squared * (1.0 / square if square else math.inf)
+def _bond_weight(square: float, r2: float) -> float:
+    return 1.0 - r2 * (1.0 / square if square else math.inf)
 
 
 def _collision_weight(square: float) -> float:

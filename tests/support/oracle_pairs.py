@@ -1,0 +1,141 @@
+"""The oracle's selections and rules, atom by atom and pair by pair; imports nothing of the package."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+from support.oracle_shapes import Vector, place, square, sub
+
+Data = dict[str, Any]
+
+
+class Group:
+    """A group of a scene: its plain data, its first atom, and where its atoms start."""
+
+    def __init__(self, data: Data) -> None:
+        self.data = data
+        self.start = 0
+        self.position, self.velocity = place(data)
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the last atom is next to the first."""
+        return self.data["shape"] in ("ring", "polygon")
+
+    def grid_place(self, index: int) -> tuple[int, ...]:
+        """Return where on its grid an atom stands, x first."""
+        place = []
+        for count in self.data["counts"]:
+            place.append(index % count)
+            index //= count
+        return tuple(place)
+
+
+Groups = dict[str, Group]
+
+
+def select(expressions: tuple[str, ...], groups: Groups) -> list[int]:
+    """Return the atoms that any of the expressions names, ascending."""
+    return sorted({atom for expression in expressions for atom in _select_one(expression, groups)})
+
+
+def _select_one(expression: str, groups: Groups) -> list[int]:
+    name, _, inside = expression.replace(" ", "").rstrip("]").partition("[")
+    if name == "all":
+        return [atom for group in groups.values() for atom in range(group.start, group.start + len(group))]
+    group = groups[name]
+    axes = [_axis(text) for text in inside.split(",")] if inside else [slice(None)]
+    if len(axes) == 1:
+        chosen = set(_range(axes[0], len(group)))
+        return [group.start + index for index in range(len(group)) if index in chosen]
+    allowed = [set(_range(axis, count)) for axis, count in zip(axes, group.data["counts"], strict=True)]
+    return [
+        group.start + index
+        for index in range(len(group))
+        if all(place in places for place, places in zip(group.grid_place(index), allowed, strict=True))
+    ]
+
+
+def _axis(text: str) -> int | slice:
+    bounds = [int(bound) if bound else None for bound in text.split(":")]
+    return slice(*bounds) if ":" in text else int(text)
+
+
+def _range(axis: int | slice, count: int) -> list[int]:
+    everything = list(range(count))
+    return everything[axis] if isinstance(axis, slice) else [everything[axis]]
+
+
+def bound_pairs(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int, float]]:
+    """Return the pairs of a bond declaration, sorted, each with its squared desired distance."""
+    pairs = {(min(pair), max(pair)) for pair in _pairs_of(entry, groups, placed) if pair[0] != pair[1]}
+    return [(i, k, rest_squared(entry["rest"], square(sub(placed[k], placed[i])))) for i, k in sorted(pairs)]
+
+
+def _pairs_of(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int]]:
+    if entry.get("between"):
+        left, right = (select(side, groups) for side in entry["between"])
+        return _apply_rule(entry, list(itertools.product(left, right)), left, right, groups, placed)
+    found = []
+    for expression in entry["within"]:
+        atoms = _select_one(expression, groups)
+        if entry["rule"] == "neighbour":
+            found += _neighbours(entry, atoms, expression, groups)
+        else:
+            found += _apply_rule(entry, list(itertools.combinations(atoms, 2)), atoms, atoms, groups, placed)
+    return found
+
+
+def _apply_rule(
+    entry: Data, every: list[tuple[int, int]], left: list[int], right: list[int], groups: Groups, placed: list[Vector]
+) -> list[tuple[int, int]]:
+    match entry["rule"]:
+        case "all-pairs":
+            return every
+        case "pairs":
+            return [(left[i], right[k]) for i, k in entry["pairs"]]
+        case "distance-threshold":
+            limit = entry["threshold"] * entry["threshold"]
+            if entry["metric"] == "grid":
+                return [(i, k) for i, k in every if _grid_square(i, k, groups) < limit]
+            return [(i, k) for i, k in every if 0.0 < square(sub(placed[k], placed[i])) < limit]
+    raise ValueError(entry["rule"])
+
+
+def _grid_square(i: int, k: int, groups: Groups) -> int:
+    group = next(group for group in groups.values() if group.start <= i < group.start + len(group))
+    one, other = group.grid_place(i - group.start), group.grid_place(k - group.start)
+    return sum((a - b) ** 2 for a, b in zip(one, other, strict=True))
+
+
+def _neighbours(entry: Data, atoms: list[int], expression: str, groups: Groups) -> list[tuple[int, int]]:
+    closed = entry["closed"]
+    if closed is None:
+        closed = expression in groups and groups[expression].is_closed
+    found = []
+    for (one, i), (other, k) in itertools.combinations(enumerate(atoms), 2):
+        gap = other - one
+        if gap <= entry["reach"] or (closed and len(atoms) - gap <= entry["reach"]):
+            found.append((i, k))
+    return found
+
+
+def colliding_pairs(entry: Data, groups: Groups) -> list[tuple[int, int]]:
+    """Return the pairs of a collision declaration, sorted."""
+    found: set[tuple[int, int]] = set()
+    for expression in entry["within"] or ():
+        numbered = itertools.combinations(enumerate(_select_one(expression, groups)), 2)
+        found |= {(i, k) for (one, i), (other, k) in numbered if other - one >= (entry["min_gap"] or 1)}
+    sides = [select(side, groups) for side in entry["between"] or entry["among"] or ()]
+    for left, right in itertools.combinations(sides, 2):
+        found |= {(min(i, k), max(i, k)) for i in left for k in right if i != k}
+    return sorted(found)
+
+
+def rest_squared(rest: float | str, initial: float) -> float:
+    """Return the square of a desired distance."""
+    return initial if rest == "initial" else rest * rest
