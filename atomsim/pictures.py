@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 from atomsim.drawing import Row, View, atom_color, compose, frames_to
 from atomsim.errors import InputError
 from atomsim.scene import loads
 from atomsim.trajectory import Trajectory
+
+Notice: TypeAlias = Callable[[str], None]
 
 N_FRAMES = 6
 """How many rounds a strip shows where nobody chose."""
@@ -24,6 +27,7 @@ def render(
     rounds: Sequence[int] | None = None,
     camera: tuple[float, float] | None = None,
     size: tuple[int, int] | None = None,
+    notice: Notice | None = None,
 ) -> None:
     """Draw a strip: frames side by side, a row per trajectory. A picture of that name is replaced.
 
@@ -33,13 +37,15 @@ def render(
         rounds: the rounds to show; by default what each scene says, else evenly spread ones.
         camera: azimuth and elevation of the viewer [degrees], instead of what the scenes say.
         size: width and height of a frame [pixels].
+        notice: hears what a user should know about where the frames come from.
 
     Raises:
         InputError: a trajectory, a round, a size or a name that will not do.
         RunError: the picture cannot be written.
     """
     with ExitStack() as opened:
-        compose([_row(path, rounds, camera, opened, every=False) for path in _paths(trajectories)], Path(picture), size)
+        found = _opened(trajectories, opened, notice)
+        compose([_row(trajectory, rounds, camera, every=False) for trajectory in found], Path(picture), size)
 
 
 def render_frames(
@@ -49,6 +55,7 @@ def render_frames(
     rounds: Sequence[int] | None = None,
     camera: tuple[float, float] | None = None,
     size: tuple[int, int] | None = None,
+    notice: Notice | None = None,
 ) -> list[Path]:
     """Draw every frame, or those of some rounds, as a PNG of its own; see `render`.
 
@@ -56,26 +63,27 @@ def render_frames(
         The files, in order.
     """
     with ExitStack() as opened:
-        rows = [_row(path, rounds, camera, opened, every=True) for path in _paths(trajectories)]
+        found = _opened(trajectories, opened, notice)
+        rows = [_row(trajectory, rounds, camera, every=True) for trajectory in found]
         return frames_to(rows, Path(folder), size)
 
 
-def _paths(trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> list[Path]:
-    if isinstance(trajectories, (str, os.PathLike)):
-        return [Path(trajectories)]
-    return [Path(path) for path in trajectories]
+def _opened(
+    trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], opened: ExitStack, notice: Notice | None
+) -> list[Trajectory]:
+    """Open one trajectory or several, until the stack is left."""
+    paths = [trajectories] if isinstance(trajectories, (str, os.PathLike)) else trajectories
+    found = [opened.enter_context(Trajectory(path)) for path in paths]
+    for message in (message for trajectory in found for message in trajectory.notices()):
+        if notice is not None:
+            notice(message)
+    return found
 
 
 def _row(
-    path: Path,
-    rounds: Sequence[int] | None,
-    camera: tuple[float, float] | None,
-    opened: ExitStack,
-    *,
-    every: bool,
+    trajectory: Trajectory, rounds: Sequence[int] | None, camera: tuple[float, float] | None, *, every: bool
 ) -> Row:
     """Choose the frames of one trajectory and from where they are seen."""
-    trajectory = opened.enter_context(Trajectory(path))
     header = trajectory.header
     chosen = loads(header.scene, header.scene_name).scene.render
     wanted = trajectory.rounds.tolist() if rounds is None and every else rounds

@@ -51,6 +51,7 @@ def run(
     scene: LoadedScene,
     path: str | os.PathLike[str],
     *,
+    rounds: int | None = None,
     replace: bool = False,
     compress: bool = False,
     report: Report | None = None,
@@ -61,6 +62,7 @@ def run(
     Args:
         scene: the scene, as `load` returns it.
         path: the trajectory to write.
+        rounds: iteration rounds to run; as the scene says by default.
         replace: whether an older trajectory of that name may go.
         compress: whether to write a smaller file, slowly.
         report: hears how far the run is.
@@ -81,7 +83,7 @@ def run(
         scene_text=scene.source.text,
         scene_name=scene.source.name,
         overrides=scene.source.overrides,
-        rounds=scene.scene.rounds,
+        rounds=rounds or scene.scene.rounds,
         record_every=scene.scene.record_every,
         compress=compress,
     )

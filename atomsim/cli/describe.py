@@ -13,6 +13,7 @@ from atomsim.core.forecast import forecast
 from atomsim.core.memory import readable_bytes
 from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model, State
 from atomsim.core.stiffness import largest_time_step
+from atomsim.scene.wording import printable
 from atomsim.trajectory import trajectory_bytes
 
 if TYPE_CHECKING:
@@ -71,9 +72,7 @@ def describe_trajectory(trajectory: Trajectory) -> list[str]:
         else:
             length = [math.hypot(*row) for row in (series[0], series[-1])]
             lines.append(f"  {'|' + name.replace('_', ' ') + '|':<28}{length[0]:>14.6g}{length[1]:>14.6g}")
-    if trajectory.from_journal:
-        lines.append(f"  read from its journal; to make the file: atomsim recover {trajectory.path}")
-    return lines
+    return [printable(line) for line in (*lines, *trajectory.notices())]
 
 
 def _line(label: str, value: str, details: Iterable[str]) -> str:

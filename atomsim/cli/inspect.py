@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from atomsim.trajectory import Trajectory
 
 
 def check(
@@ -56,11 +59,22 @@ def show(
 
     atomsim show out.h5 --scene > again.yaml
     """
+    from atomsim import Trajectory
     from atomsim.cli.describe import describe_trajectory
-    from atomsim.trajectory import Trajectory
 
     with Trajectory(trajectory) as frames:
-        print(frames.header.scene.rstrip("\n") if scene else "\n".join(describe_trajectory(frames)))
+        print(_scene_of(frames) if scene else "\n".join(describe_trajectory(frames)))
+
+
+def _scene_of(trajectory: Trajectory) -> str:
+    """Return the scene that gives this trajectory: the one inside, with the rounds that were asked for."""
+    from atomsim.scene import loads
+
+    header = trajectory.header
+    loaded = loads(header.scene, header.scene_name)
+    if loaded.scene.rounds != header.rounds:
+        loaded = loads(header.scene, header.scene_name, [f"rounds={header.rounds}"])
+    return loaded.source.text.rstrip("\n")
 
 
 def schema() -> None:

@@ -45,14 +45,20 @@ def render(
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
     if frames is not None:
-        written = pictures.render_frames(trajectories, frames, rounds=wanted, camera=angles, size=pixels)
+        written = pictures.render_frames(
+            trajectories, frames, rounds=wanted, camera=angles, size=pixels, notice=_notice
+        )
         print(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
     picture = trajectories[0].with_suffix(".png") if output is None else output
     if picture.exists() and not force and not is_our_picture(picture):
         raise InputError(f"{picture} exists and atomsim did not draw it; add --force to replace it")
-    pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels)
+    pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels, notice=_notice)
     print(picture)
+
+
+def _notice(message: str) -> None:
+    typer.echo(message, err=True)
 
 
 def _rounds(text: str) -> list[int]:

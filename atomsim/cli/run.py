@@ -65,10 +65,10 @@ def run(
         elif scene is not None:
             from atomsim.scene import load
 
-            changes = [*(settings or []), *([] if rounds is None else [f"rounds={rounds}"])]
             outcome = record.run(
-                load(scene, changes),
+                load(scene, settings or ()),
                 output,
+                rounds=rounds,
                 replace=force,
                 compress=compress,
                 report=report,

@@ -150,6 +150,23 @@ class Trajectory(Sequence[Frame]):
         """By name as in `Observables`, what was measured of each frame, (n_frames,) or (n_frames, 3)."""
         return {name: np.ascontiguousarray(self._source.series[name]) for name in OBSERVABLES}
 
+    def notices(self) -> list[str]:
+        """Return what a user should know about where the frames come from; empty for a finished file alone."""
+        notices = []
+        if self.from_journal:
+            notices.append(
+                f"{self.path}: read from its journal up to round {self.rounds[-1]}; to go on: atomsim run --resume "
+                f"{self.path}; to make the file of what there is: atomsim recover {self.path}"
+            )
+        elif self.has_journal:
+            notices.append(
+                f"{self.path}: there is also a journal of a newer run that has not finished; to go on with it: "
+                f"atomsim run --resume {self.path}"
+            )
+        if self.lost_bytes:
+            notices.append(f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out")
+        return notices
+
     def verify(self) -> None:
         """Read every frame and check it against its digest.
 

@@ -42,7 +42,7 @@ def test_an_existing_file_stays_without_force(cli):
 def test_settings_are_recorded_and_change_the_run(cli):
     assert cli("run", "scenes/rods.yaml", "--rounds", "20", "--set", "time_step=0.005").code == 0
     shown = cli("show", "out.h5").out
-    assert "rods.yaml: --set time_step=0.005, --set rounds=20\n" in shown
+    assert "rods.yaml: --set time_step=0.005\n" in shown
     assert "τ = 0.005" in shown
 
 
@@ -66,7 +66,7 @@ def test_a_resumed_run_writes_the_bytes_of_an_uninterrupted_one(cli):
     result = cli("run", "--resume", "b.h5", "--rounds", "75")
     assert result.code == 0
     assert text(result.out).startswith("b.h5: 42 rounds in ")
-    assert cli("compare", "a.h5", "b.h5").code == 0
+    assert Path("a.h5").read_bytes() == Path("b.h5").read_bytes()
 
 
 def test_compare_names_round_atom_and_size(cli):
