@@ -19,6 +19,9 @@ TILE = 1 << 18
 DENSE_LIMIT = 1 << 22
 """Up to so many pairs it is cheaper to look at all of them than to sort atoms into cells."""
 
+Found = tuple[Indices, float]
+"""Keys first · n_right + second of near pairs, and which share of all candidates has been looked at."""
+
 LARGE = 1 << 26
 """Bytes of pairs from which on it is worth asking whether more will fit."""
 
@@ -27,6 +30,9 @@ COPIES = 6
 
 _MAX_CELL = float(1 << 19)
 """Cells are counted from the middle of the scene; whatever lies further out shares the outermost cell."""
+
+_MOST_OUTSIDE = 1000
+"""So many atoms may share the outermost cells; where there are more, the cells become wider."""
 
 
 def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indices, Indices]:
@@ -41,18 +47,20 @@ def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indic
         Indices into `left` and into `right` (or again `left`).
 
     Raises:
-        MemoryError: so many pairs are near that they do not fit.
+        MemoryError: so many pairs are near that they would not fit, told from the first ones found.
     """
     n_left = left.shape[1]
     n_right = n_left if right is None else right.shape[1]
     search = _by_tiles if n_left * n_right <= DENSE_LIMIT else _by_cells
     found: list[Indices] = []
     size = 0
-    for band in search(left, right, cutoff):
+    for band, share in search(left, right, cutoff):
         found.append(band)
         size += band.nbytes
-        if size > LARGE and size * COPIES > free_memory():
-            raise MemoryError(f"more than {size // 8:,} pairs are near each other")
+        if size > LARGE and size / share * COPIES > free_memory():
+            raise MemoryError(
+                f"about {size / share / band.itemsize:.2g} pairs are near each other, too many for memory"
+            )
     if not found:
         empty = np.empty(0, dtype=np.int64)
         return empty, empty
@@ -71,8 +79,8 @@ def squared_distance(left: Floats, right: Floats) -> Floats:
     return total
 
 
-def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Indices]:
-    """Look at all pairs, a band of rows at a time; yields the keys first · n_right + second."""
+def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Found]:
+    """Look at all pairs, a band of rows at a time."""
     partner = left if right is None else right
     n_right = partner.shape[1]
     rows = max(1, TILE // max(1, n_right))
@@ -86,11 +94,11 @@ def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Ind
             ordered = first < second
             first, second = first[ordered], second[ordered]
         if first.size:
-            yield first * n_right + second
+            yield first * n_right + second, min(1.0, (start + rows) / left.shape[1])
 
 
-def _by_cells(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Indices]:
-    """Look only at pairs in neighbouring cells of a grid; yields the keys first · n_right + second.
+def _by_cells(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Found]:
+    """Look only at pairs in neighbouring cells of a grid.
 
     Atoms are sorted by cell, z fastest, so the three cells (z − 1, z, z + 1) of a column are one run of atoms:
     each atom has nine runs to look at, or, inside one set, four runs and the rest of its own column.
@@ -98,37 +106,54 @@ def _by_cells(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Ind
     partner = left if right is None else right
     n_right = partner.shape[1]
     middle = np.median(partner, axis=1)
-    key_right = _cell_key(partner, middle, cutoff)
+    width = _cell_width(partner, middle, cutoff)
+    key_right = _cell_key(partner, middle, width)
     order = np.argsort(key_right, kind="stable")
     sorted_key = key_right[order]
-    key_left = sorted_key if right is None else _cell_key(left, middle, cutoff)
+    key_left = sorted_key if right is None else _cell_key(left, middle, width)
     atom_left = order if right is None else np.arange(left.shape[1])
     place = np.arange(atom_left.size)
     columns = [(0, 0), (0, 1), (1, -1), (1, 0), (1, 1)] if right is None else _ALL_COLUMNS
+    runs = []
     for column in columns:
         shift = (column[0] << 42) + (column[1] << 21)
         start = np.searchsorted(sorted_key, key_left + (shift - 1), side="left")
-        stop = np.searchsorted(sorted_key, key_left + (shift + 1), side="right")
         if right is None and column == (0, 0):
             start = place + 1
-        for band in _bands(stop - start):
-            count = stop[band] - start[band]
+        runs.append((start, np.searchsorted(sorted_key, key_left + (shift + 1), side="right") - start))
+    n_candidates = sum(int(count.sum()) for _, count in runs)
+    n_seen = 0
+    for start, run in runs:
+        for band in _bands(run):
+            count = run[band]
             first = np.repeat(atom_left[band], count)
             second = order[_ragged_ranges(start[band], count)]
+            n_seen += first.size
             near = squared_distance(left[:, first], partner[:, second]) < cutoff * cutoff
             first, second = first[near], second[near]
             if right is None:
                 first, second = np.minimum(first, second), np.maximum(first, second)
             if first.size:
-                yield first * n_right + second
+                yield first * n_right + second, n_seen / n_candidates
 
 
 _ALL_COLUMNS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
 
 
-def _cell_key(position: Floats, middle: Floats, cutoff: float) -> Indices:
-    """Number the cells: x, y, z in 21 bits each; cells are a little wider than the cutoff, against rounding."""
-    cell = (position - middle[:, None]) / (cutoff * 1.000001)
+def _cell_width(position: Floats, middle: Floats, cutoff: float) -> float:
+    """Return the width of cells: a little more than the cutoff, against rounding, and enough to tell atoms apart."""
+    width = cutoff * 1.000001
+    n_inside = position.shape[1] - _MOST_OUTSIDE
+    if n_inside > 0:
+        distance = np.abs(position - middle[:, None])
+        distance.partition(n_inside, axis=1)
+        width = max(width, float(distance[:, n_inside].max()) / _MAX_CELL)
+    return width
+
+
+def _cell_key(position: Floats, middle: Floats, width: float) -> Indices:
+    """Number the cells: x, y, z in 21 bits each."""
+    cell = (position - middle[:, None]) / width
     np.floor(cell, out=cell)
     np.clip(cell, -_MAX_CELL, _MAX_CELL, out=cell)
     x, y, z = (cell + (_MAX_CELL + 1)).astype(np.int64)
