@@ -1,11 +1,13 @@
 """Which declared collision pairs are near, remembered over rounds; knows no forces from outside and no scenes.
 
 A collision force fc = (c_k − c_i) · min(0, 1 − 4/d²) (paper section 2.3) is exactly zero for d ≥ 2, so pairs that far
-apart may be skipped without changing a bit. A list of the pairs nearer than 2 + SKIN stays valid until some atom has
-moved SKIN/2 since it was made; when it is made anew never shows in the result.
+apart may be skipped without changing a bit. A list of the pairs nearer than 2 + skin stays valid until some atom has
+moved skin/2 since it was made; when it is made anew, and how far it looks, never shows in the result.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -16,7 +18,13 @@ CONTACT_SQUARED = 4.0
 """Two unit balls touch when their centres are less than 2 apart: (1 + 1)²."""
 
 SKIN = 0.5
-"""How much further than contact a list looks [length]: a longer list against a list made more often."""
+"""How much further than contact the first list looks [length]: a longer list against a list made more often."""
+
+NARROWEST_SKIN, WIDEST_SKIN = 0.1, 8.0
+"""Between these the next list may look further, or less far."""
+
+MAKING_COST = 100
+"""Finding the partners of one atom takes about as long as one round of so many partners."""
 
 
 class NearList:
@@ -25,13 +33,14 @@ class NearList:
     Args:
         tables: the declared collisions.
         n_atoms: number of atoms of the model.
-        skin: how much further than contact the list looks [length].
+        skin: how much further than contact the first list looks [length]; later ones adapt.
     """
 
     def __init__(self, tables: tuple[CollisionTable, ...], n_atoms: int, skin: float = SKIN) -> None:
         self._tables = tables
+        self._n_updates = 0
         self._skin = skin
-        self._atoms = _involved(tables, n_atoms)
+        self._atoms = as_index(involved_atoms(tables, n_atoms))
         self._made_at: Floats | None = None
         self.pairs: list[tuple[Indices, Indices]] = []
         """For each table the near pairs (first, second), sorted, valid for the last position asked about."""
@@ -41,13 +50,36 @@ class NearList:
         if not self._tables:
             return False
         involved = position[:, self._atoms]
+        self._n_updates += 1
         if self._made_at is not None:
-            moved = squared_distance(self._made_at, involved).max()
-            if 4.0 * moved < 0.999999 * self._skin * self._skin:  # a little early, against rounding
+            if squared_distance(self._made_at, involved).max() < squared_reach(self._skin):
                 return False
+            n_near = 2 * sum(first.size for first, _ in self.pairs)
+            self._skin = better_skin(self._skin, self._n_updates, involved.shape[1], n_near)
         self._made_at = involved.copy()
+        self._n_updates = 0
         self.pairs = [table_pairs_near(table, position, 2.0 + self._skin) for table in self._tables]
         return True
+
+
+def squared_reach(skin: float) -> float:
+    """Return the squared way that an atom may move before a list ends to be valid; a little less, against rounding."""
+    return 0.25 * 0.999999 * skin * skin
+
+
+def better_skin(skin: float, n_rounds: int, n_atoms: int, n_near: int) -> float:
+    """Return how far the next list should look, so that making lists costs one to four times as much as using them.
+
+    Args:
+        skin: how much further than contact the last list looked [length].
+        n_rounds: rounds that it was valid for.
+        n_atoms: atoms whose partners it listed.
+        n_near: partners it listed, over all these atoms.
+    """
+    making, using = MAKING_COST * n_atoms, n_near * n_rounds
+    if making > 4 * using:
+        return min(1.4 * skin, WIDEST_SKIN)
+    return max(skin / 1.4, NARROWEST_SKIN) if making < using else skin
 
 
 def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> tuple[Indices, Indices]:
@@ -73,14 +105,14 @@ def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> 
     return key // n_atoms, key % n_atoms
 
 
-def _involved(tables: tuple[CollisionTable, ...], n_atoms: int) -> slice | Indices:
-    """Return the atoms that may collide at all, as a slice where they are consecutive."""
+def involved_atoms(tables: Iterable[CollisionTable], n_atoms: int) -> Indices:
+    """Return which of the atoms 0 … n_atoms − 1 may collide at all, ascending."""
     is_involved = np.zeros(n_atoms, dtype=bool)
     for table in tables:
         for block in table.blocks:
             for atoms in (block.left, block.right) if isinstance(block, Between) else (block.atoms,):
                 is_involved[atoms] = True
-    return as_index(np.flatnonzero(is_involved))
+    return np.flatnonzero(is_involved)
 
 
 def as_index(atoms: Indices) -> slice | Indices:

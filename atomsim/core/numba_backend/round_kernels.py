@@ -1,0 +1,114 @@
+"""Iteration rounds of a share of atoms, compiled (paper section 2.2); knows no threads, nor how lists are made."""
+
+from __future__ import annotations
+
+from atomsim.core.collisions import CONTACT_SQUARED
+from atomsim.core.model import Floats
+from atomsim.core.numba_backend.bond_kernels import add_rows, add_tiles
+from atomsim.core.numba_backend.force_kernels import add_forces
+from atomsim.core.numba_backend.jit import inner, kernel
+from atomsim.core.numba_backend.records import Bonds, Forces, Motion, NearPairs, Watch
+
+
+@kernel
+def advance_rounds(
+    start: int,
+    stop: int,
+    time_step: float,
+    motion: Motion,
+    bonds: Bonds,
+    near: NearPairs,
+    forces: Forces,
+    pushes: Floats,
+    watch: Watch,
+    limit: float,
+    workspace: Floats,
+) -> tuple[int, bool]:
+    """Advance the slots start ≤ slot < stop by as many rounds as `pushes` has, or until the near pairs are stale.
+
+    j(n) = Σ forces;  v(n+1) = v(n) + j(n);  c(n+1) = c(n) + τ · v(n+1).
+
+    Args:
+        start: first slot of the share.
+        stop: one past its last slot.
+        time_step: τ [time].
+        motion: the state of all atoms.
+        bonds: the bonds of the share.
+        near: the near collision pairs of the share.
+        forces: forces from outside.
+        pushes: what they add uniformly, per round ahead, (n_rounds, n_forces, 3).
+        watch: the positions for which `near` was made.
+        limit: squared way from which on an atom makes `near` stale [length²].
+        workspace: scratch, (2, 3, LANES).
+
+    Returns:
+        The number of rounds done, and whether the near pairs are stale. `motion.here` and `motion.there` change places
+        in every round, so after an odd number of rounds the new positions are in `there`.
+    """
+    here, there, velocity, impulse = motion
+    for number in range(pushes.shape[0]):
+        for component in range(3):
+            impulse[component, start:stop] = 0.0
+        for table in range(bonds.table_first_tile.size - 1):
+            add_tiles(table, bonds, here, impulse, workspace, stop)
+            add_rows(table, bonds, here, impulse)
+        for table in range(near.table_first_row.size - 1):
+            _add_collisions(table, near, here, impulse)
+        add_forces(forces, pushes[number], here, velocity, impulse, start, stop)
+        for component in range(3):
+            _move(
+                time_step,
+                here[component, start:stop],
+                there[component, start:stop],
+                velocity[component, start:stop],
+                impulse[component, start:stop],
+            )
+        here, there = there, here
+        if _is_stale(watch, limit, here):
+            return number + 1, True
+    return pushes.shape[0], False
+
+
+@inner
+def _add_collisions(table: int, near: NearPairs, position: Floats, impulse: Floats) -> None:
+    """Add the subtotals of fc = (c_k − c_i) · min(0, 1 − 4/d²) (paper section 2.3) over a table's near pairs."""
+    x, y, z = position[0], position[1], position[2]
+    for row in range(near.table_first_row[table], near.table_first_row[table + 1]):
+        atom = near.row_slot[row]
+        total_x, total_y, total_z = 0.0, 0.0, 0.0
+        for entry in range(near.row_first_entry[row], near.row_first_entry[row + 1]):
+            partner = near.entry_partner[entry]
+            dx, dy, dz = x[partner] - x[atom], y[partner] - y[atom], z[partner] - z[atom]
+            weight = 1.0 - CONTACT_SQUARED * (1.0 / ((dx * dx + dy * dy) + dz * dz))
+            if weight > 0.0:  # false for NaN, which stays
+                weight = 0.0
+            total_x += weight * dx
+            total_y += weight * dy
+            total_z += weight * dz
+        impulse[0, atom] += total_x
+        impulse[1, atom] += total_y
+        impulse[2, atom] += total_z
+
+
+@inner
+def _move(time_step: float, here: Floats, there: Floats, velocity: Floats, impulse: Floats) -> None:
+    """Integrate one component."""
+    for number in range(here.size):
+        velocity[number] += impulse[number]
+        there[number] = here[number] + time_step * velocity[number]
+
+
+@inner
+def _is_stale(watch: Watch, limit: float, position: Floats) -> bool:
+    """Return whether any atom has moved as far as the lists of near pairs allow, or has no place any more."""
+    n_far = 0
+    for run in range(watch.run_start.size):
+        start, stop = watch.run_start[run], watch.run_stop[run]
+        x, y, z = position[0, start:stop], position[1, start:stop], position[2, start:stop]
+        old_x = watch.made_at[0, start:stop]
+        old_y = watch.made_at[1, start:stop]
+        old_z = watch.made_at[2, start:stop]
+        for number in range(stop - start):
+            dx, dy, dz = x[number] - old_x[number], y[number] - old_y[number], z[number] - old_z[number]
+            n_far += not (dx * dx + dy * dy) + dz * dz < limit
+    return n_far > 0
