@@ -1,0 +1,241 @@
+"""Writes the generated pages of the docs, and the JSON Schema, from the code; knows no wording of its own but headings.
+
+Run it with `make reference`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from atomsim.cli.app import app
+from atomsim.scene import language
+from atomsim.scene.field_docs import discriminator
+from atomsim.scene.language import Declaration
+from atomsim.scene.schema import FieldDoc, field_docs, schema_text
+
+ROOT = Path(__file__).parent.parent
+EXAMPLES = ROOT / "docs" / "examples"
+
+GENERATED = "<!-- Written by `make reference` from the code and docs/examples; changes by hand are lost. -->\n"
+
+SHAPES = ("StringGroup", "RingGroup", "PolygonGroup", "PlaneGroup", "BlockGroup", "AtomsGroup")
+RULES = ("AllPairsBonds", "NeighbourBonds", "DistanceThresholdBonds", "ListedBonds")
+KINDS = ("Damping", "Gravity", "Push", "Hold", "Oscillate", "Torque", "Tether")
+
+SCENE_INTRODUCTION = """\
+# Scene reference
+
+Every key of a scene file. A scene is YAML, and data only: loading it runs nothing.
+A [tutorial](tutorial.md) builds one step by step; editors complete and check scenes with the
+[JSON Schema](../atomsim/scene/scene.schema.json), which `atomsim schema` prints.
+
+An unknown key is an error, and so is a value of the wrong type: nothing is guessed. `null` counts as not written.
+Numbers may be written `1e-9`; booleans are `true` and `false`.
+
+## Words used below
+
+| type | what to write |
+| --- | --- |
+| `[x, y, z]` | three numbers |
+| `selection` | atoms by name: `ring` (a group), `ring[0]`, `ring[-1]`, `ring[0:10]`, `ring[::2]`, `floor[0, :]` \
+(planes and blocks, x first), `all`, or a list of these (their union) |
+| `[selection, selection]` | two selections: `[ring, floor]`, `[[left, right], floor]` |
+| `color` | a CSS name such as `steelblue`, or `"#rgb"` or `"#rrggbb"` in quotes |
+| `mapping by name` | `name: value`, one a line; names have letters, digits, `_` and `-` |
+
+An atom has radius 1 and mass 1. Lengths are in radii; a unit of time is whatever `time_step` makes of it.
+"""
+
+EXTENDS = """\
+### Extending another scene
+
+`extends: other.yaml` lays a scene over another one, which is looked up beside it. Mappings merge by key, everything
+else replaces, and `null` deletes. A scene that extends writes only what differs.
+"""
+
+SELECTIONS = """\
+### Selections
+
+Wherever atoms are named, a part of a group will do.
+"""
+
+EXIT_CODES = """\
+## Exit codes
+
+| code | meaning |
+| --- | --- |
+| 0 | done |
+| 1 | the run failed (disk, memory), or a comparison, a verification or a golden differs |
+| 2 | bad usage or bad input: a scene, a path, a file that is not ours |
+| 3 | the simulation blew up; the frames before are kept |
+| 130 | interrupted by Ctrl-C, after writing what there is (143: terminated) |
+
+Results go to standard output; progress and messages go to standard error.
+"""
+
+
+def generated() -> dict[Path, str]:
+    """Return every generated file with its text."""
+    return {
+        ROOT / "docs" / "scene-reference.md": "\n".join(_scene_reference()),
+        ROOT / "docs" / "commands.md": "\n".join(_commands()),
+        ROOT / "atomsim" / "scene" / "scene.schema.json": schema_text(),
+    }
+
+
+def _scene_reference() -> Iterator[str]:
+    """Yield the parts of the scene reference."""
+    docs = field_docs()
+    yield GENERATED
+    yield SCENE_INTRODUCTION
+    yield from _section("## The scene", ["Scene"], docs)
+    yield EXTENDS
+    yield _examples("extends")
+    yield SELECTIONS
+    yield _examples("selections")
+    yield from _section("### Jitter", ["Jitter"], docs)
+    yield _examples("jitter")
+    yield from _family("## Groups", "GroupBase", SHAPES, docs)
+    yield from _section("### Turning a group: `rotate`", ["Rotation"], docs)
+    yield _examples("rotate")
+    yield from _section("### Spinning a group: `spin`", ["Spin"], docs)
+    yield _examples("spin")
+    yield from _family("## Bonds", "BondBase", RULES, docs)
+    yield from _section("## Collisions", ["Collisions"], docs)
+    yield _examples("within", "between", "among")
+    yield from _family("## Forces", "ForceBase", KINDS, docs)
+    yield from _section("## Pictures: `render`", ["Render"], docs)
+    yield from _section("### Camera", ["Camera"], docs)
+    yield _examples("render")
+
+
+def _section(heading: str, names: Iterable[str], docs: dict[str, dict[str, FieldDoc]]) -> Iterator[str]:
+    """Yield a heading, and what the docstrings say of declarations."""
+    yield heading + "\n"
+    for name in names:
+        yield inspect.cleandoc(getattr(language, name).__doc__) + "\n"
+        yield _fields(docs[name])
+
+
+def _family(
+    heading: str, base: str, names: Iterable[str], docs: dict[str, dict[str, FieldDoc]]
+) -> Iterator[str]:
+    """Yield the keys that all members of a family share, then each member with its own keys and an example."""
+    members = {name: getattr(language, name) for name in names}
+    first = next(iter(members))
+    shared = set(_annotated(next(class_ for class_ in members[first].__mro__ if class_.__name__ == base)))
+    yield heading + "\n"
+    yield f"Each has a `{_word(members[first])[0]}`, and may have:\n"
+    yield _fields({key: doc for key, doc in docs[first].items() if key in shared})
+    for name, class_ in members.items():
+        word = _word(class_)[1]
+        yield f"### `{word}`\n"
+        yield inspect.cleandoc(class_.__doc__) + "\n"
+        inherited = shared - set(_annotated(class_))
+        yield _fields({key: doc for key, doc in docs[name].items() if key not in inherited})
+        yield _examples(word)
+
+
+def _annotated(class_: type[Declaration]) -> list[str]:
+    """Return the fields that a class itself declares."""
+    return list(class_.__dict__["__annotations__"])
+
+
+def _word(class_: type[Declaration]) -> tuple[str, str]:
+    """Return the key and the word that choose a declaration: ("shape", "ring")."""
+    chosen = discriminator(class_)
+    assert chosen is not None, f"{class_.__name__} is not chosen by a word"
+    return chosen
+
+
+def _fields(fields: dict[str, FieldDoc]) -> str:
+    """Return a table of keys."""
+    rows = [
+        f"| `{key}` | {_in_code(doc.type)} | {'required' if doc.default is None else _in_code(doc.default)} "
+        f"| {doc.description} |"
+        for key, doc in fields.items()
+    ]
+    return "\n".join(["| key | type | default | meaning |", "| --- | --- | --- | --- |", *rows, ""])
+
+
+def _in_code(text: str) -> str:
+    return f"`{text}`" if text else ""
+
+
+def _examples(*names: str) -> str:
+    """Return example scenes by name, each in a fence."""
+    texts = ((EXAMPLES / f"{name}.yaml").read_text(encoding="utf-8") for name in names)
+    return "\n".join(f"```yaml\n{text}```\n" for text in texts)
+
+
+def _commands() -> Iterator[str]:
+    """Yield the parts of the page of commands."""
+    top = typer.main.get_command(app)
+    yield GENERATED
+    yield f"# Commands\n\n{top.help}\n\nEvery command explains itself: `atomsim run --help`.\n"
+    yield _parameters(top)
+    for name, command in _leaves(top, "atomsim"):
+        yield f"## `{name}`\n"
+        yield _prose(command)
+        yield _parameters(command)
+    yield EXIT_CODES.rstrip("\n") + "\n"
+
+
+def _leaves(command: Any, name: str) -> Iterator[tuple[str, Any]]:
+    """Yield the commands that do something, with their full names."""
+    for word, inner in getattr(command, "commands", {}).items():
+        full = f"{name} {word}"
+        if hasattr(inner, "commands"):
+            yield from _leaves(inner, full)
+        else:
+            yield full, inner
+
+
+def _prose(command: Any) -> str:
+    """Return what a command says of itself, its examples in a fence."""
+    text, _, examples = re.split(r"^(Examples?:)$", inspect.cleandoc(command.help), maxsplit=1, flags=re.MULTILINE)
+    fenced = "\n".join(line for line in examples.splitlines() if line.strip())
+    return f"{text.strip()}\n\n```text\n{fenced}\n```\n"
+
+
+def _parameters(command: Any) -> str:
+    """Return a table of arguments and options."""
+    shown = [parameter for parameter in command.params if getattr(parameter, "help", None)]
+    if not shown:
+        return ""
+    rows = [f"| {_spelling(parameter)} | {_default(parameter)} | {_meaning(parameter)} |" for parameter in shown]
+    return "\n".join(["| argument or option | default | meaning |", "| --- | --- | --- |", *rows, ""])
+
+
+def _spelling(parameter: Any) -> str:
+    """Return how a parameter is typed: `--output`, `-o` OUTPUT."""
+    if parameter.param_type_name == "argument":
+        return f"`{parameter.metavar or parameter.name.upper()}`"
+    names = ", ".join(f"`{name}`" for name in parameter.opts)
+    return names if parameter.is_flag else f"{names} `{parameter.metavar or parameter.name.upper()}`"
+
+
+def _default(parameter: Any) -> str:
+    if parameter.required:
+        return "required"
+    stated = re.search(r"\[default: (.*)\]", parameter.help)
+    if stated:
+        return stated[1]
+    is_silent = parameter.is_flag if parameter.param_type_name == "option" else True
+    return "" if is_silent or parameter.default in (None, "") else f"`{parameter.default}`"
+
+
+def _meaning(parameter: Any) -> str:
+    text: str = re.sub(r"\s*\[default: .*\]", "", parameter.help)
+    return text.replace("|", "\\|")
+
+
+if __name__ == "__main__":
+    for path, text in generated().items():
+        path.write_text(text, encoding="utf-8")
