@@ -9,7 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-from atomsim.drawing import Row, View, atom_color, compose, frames_to
+from atomsim.compiler.colors import atom_color
+from atomsim.drawing import Row, View, compose, frames_to
 from atomsim.errors import InputError
 from atomsim.scene import loads
 from atomsim.trajectory import Trajectory
@@ -85,7 +86,8 @@ def _row(
 ) -> Row:
     """Choose the frames of one trajectory and from where they are seen."""
     header = trajectory.header
-    chosen = loads(header.scene, header.scene_name).scene.render
+    scene = loads(header.scene, header.scene_name).scene
+    chosen = scene.render
     wanted = trajectory.rounds.tolist() if rounds is None and every else rounds
     asked = _asked(trajectory, wanted, chosen.rounds)
     view = View(**chosen.camera.model_dump())
@@ -94,7 +96,7 @@ def _row(
     return Row(
         title=_title(trajectory),
         frames=tuple(trajectory[_nearest(trajectory, round_index)] for round_index in asked),
-        color=atom_color(header.groups),
+        color=atom_color(scene),
         view=view,
         background=chosen.background,
         asked=asked,

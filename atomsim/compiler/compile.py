@@ -10,8 +10,9 @@ from typing import TypeVar, assert_never
 import numpy as np
 
 from atomsim.compiler.coincident import coincident_pairs
+from atomsim.compiler.colors import PALETTE, hex_color
 from atomsim.compiler.pairs import RuleError, expand
-from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
+from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out
 from atomsim.compiler.shapes import count_atoms, place, unit
 from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.memory import free_memory, readable_bytes
@@ -36,9 +37,7 @@ from atomsim.core.model import (
 )
 from atomsim.core.near import squared_distance
 from atomsim.errors import Problem, SceneError
-from atomsim.scene.css_colors import CSS_COLORS
 from atomsim.scene.language import (
-    BlockGroup,
     Bonds,
     Collisions,
     Damping,
@@ -47,19 +46,13 @@ from atomsim.scene.language import (
     Hold,
     Jitter,
     Oscillate,
-    PlaneGroup,
-    PolygonGroup,
     Push,
     Rest,
-    RingGroup,
     Scene,
     Tether,
     Torque,
 )
 from atomsim.scene.source import Path, Source
-
-PALETTE = ("#4682b4", "#b22222", "#2e8b57", "#daa520", "#8a5ba5", "#d2691e", "#5f9ea0", "#c0538c")
-"""Colours of groups that do not choose one, in order of declaration."""
 
 BYTES_PER_ATOM = 600
 """What an atom costs while a scene compiles and runs, beside its pairs."""
@@ -98,7 +91,7 @@ class _Compiler:
     def compile(self) -> tuple[Model, State]:
         """Compile every section in order and report all mistakes together."""
         scene = self._scene
-        layouts = self._lay_out()
+        layouts = lay_out(scene)
         n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
         self._require_room(n_atoms)
         self._selections = Selections(layouts, n_atoms)
@@ -111,6 +104,7 @@ class _Compiler:
         bonds = [self._bond_table(name, entry) for name, entry in scene.bonds.items()]
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
         forces = [self._force(name, entry) for name, entry in scene.forces.items()]
+        self._check_colors()
         self._stop_if_wrong()
         model = Model(
             title=scene.title,
@@ -123,17 +117,6 @@ class _Compiler:
         )
         return model, State(0, _read_only(self._position), _read_only(velocity))
 
-    def _lay_out(self) -> dict[str, GroupLayout]:
-        """Number the atoms group after group."""
-        layouts = {}
-        start = 0
-        for name, group in self._scene.groups.items():
-            stop = start + count_atoms(group)
-            grid = tuple(group.counts) if isinstance(group, (PlaneGroup, BlockGroup)) else (stop - start,)
-            layouts[name] = GroupLayout(start, stop, grid, isinstance(group, (RingGroup, PolygonGroup)))
-            start = stop
-        return layouts
-
     def _spans(self, layouts: dict[str, GroupLayout]) -> tuple[GroupSpan, ...]:
         """Give every group its place, colour and origin."""
         chosen = self._scene.render.colors
@@ -142,7 +125,7 @@ class _Compiler:
                 name=name,
                 start=layouts[name].start,
                 stop=layouts[name].stop,
-                color=_hex_color(chosen.get(name) or group.color or PALETTE[number % len(PALETTE)]),
+                color=hex_color(chosen.get(name) or group.color or PALETTE[number % len(PALETTE)]),
                 origin=self._origin("groups", name),
             )
             for number, (name, group) in enumerate(self._scene.groups.items())
@@ -224,6 +207,14 @@ class _Compiler:
         except SelectionError as error:
             self._complain(path, str(error))
             return None
+
+    def _check_colors(self) -> None:
+        """Complain of colours for atoms that do not exist; who draws asks for them again."""
+        for selection in self._scene.render.colors:
+            try:
+                self._selections.atoms((selection,))
+            except SelectionError as error:
+                self._complain(("render", "colors", selection), str(error))
 
     def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> TetherForce:
         initial = squared_distance(self._placed[atoms].T, np.array(force.target)[:, None])
@@ -316,12 +307,6 @@ def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
 def _rest_squared(rest: Rest, initial: Floats) -> Floats:
     """Return r² per pair: the squared initial distance itself, without the detour through the root, or a number's."""
     return initial if rest == "initial" else np.full(initial.shape, rest * rest)
-
-
-def _hex_color(color: str) -> str:
-    """Return a colour as #rrggbb."""
-    color = CSS_COLORS.get(color.lower(), color).lower()
-    return color if len(color) == 7 else "#" + "".join(2 * digit for digit in color[1:])
 
 
 def _parts(key: str) -> Path:

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from atomsim.compiler.shapes import count_atoms
 from atomsim.core.model import Indices
+from atomsim.scene.language import BlockGroup, PlaneGroup, PolygonGroup, RingGroup, Scene
 from atomsim.scene.selection import parse_selection
 
 
@@ -26,6 +28,18 @@ class GroupLayout:
     stop: int
     grid: tuple[int, ...]
     is_closed: bool
+
+
+def lay_out(scene: Scene) -> dict[str, GroupLayout]:
+    """Number the atoms of a scene, group after group in order of declaration."""
+    layouts = {}
+    start = 0
+    for name, group in scene.groups.items():
+        stop = start + count_atoms(group)
+        grid = tuple(group.counts) if isinstance(group, (PlaneGroup, BlockGroup)) else (stop - start,)
+        layouts[name] = GroupLayout(start, stop, grid, isinstance(group, (RingGroup, PolygonGroup)))
+        start = stop
+    return layouts
 
 
 class Selections:

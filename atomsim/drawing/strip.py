@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from atomsim.core.model import Floats, Frame, GroupSpan
+from atomsim.core.model import Floats, Frame
 from atomsim.errors import InputError, RunError
 from atomsim.drawing.camera import View
 from atomsim.drawing.files import MARK, check_target, write_whole
@@ -86,17 +86,6 @@ class Row:
         background = _rgb(self.background)
         for frame in self.frames:
             yield draw(frame.position, self.color, camera, size, background)
-
-
-def atom_color(groups: Sequence[GroupSpan]) -> Floats:
-    """Return the colour of every atom from that of its group: red, green and blue from 0 to 1, (n_atoms, 3).
-
-    >>> from atomsim.core.model import Origin
-    >>> atom_color([GroupSpan("ball", 0, 1, "#ff0033", Origin("groups", "ball", "balls.yaml", 3))])
-    array([[1. , 0. , 0.2]])
-    """
-    colors = [[int(group.color[at : at + 2], 16) / 255 for at in (1, 3, 5)] for group in groups]
-    return np.repeat(np.array(colors).reshape(-1, 3), [group.stop - group.start for group in groups], axis=0)
 
 
 def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None) -> None:

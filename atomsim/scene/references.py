@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 from atomsim.errors import Problem
@@ -36,15 +37,14 @@ def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
         for name, declaration in _mapping(data.get(section)).items():
             for key in _SELECTION_KEYS:
                 for path, text in _texts(_mapping(declaration).get(key), (section, name, key)):
-                    try:
+                    with suppress(SelectionSyntaxError):
                         yield path, parse_selection(text).group
-                    except SelectionSyntaxError:
-                        continue
 
 
 def _colored(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
-    for name in _mapping(_mapping(data.get("render")).get("colors")):
-        yield ("render", "colors", name), name
+    for text in _mapping(_mapping(data.get("render")).get("colors")):
+        with suppress(SelectionSyntaxError):
+            yield ("render", "colors", text), parse_selection(text).group
 
 
 def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from atomsim.core.model import Frame, GroupSpan, Observables, Origin
-from atomsim.errors import InputError
+from atomsim.core.model import Frame, Observables
 from atomsim.drawing.camera import View
 from atomsim.drawing.files import is_our_picture
 from atomsim.drawing.layout import Layout
-from atomsim.drawing.strip import Row, atom_color, compose, frames_to
+from atomsim.drawing.strip import Row, compose, frames_to
+from atomsim.errors import InputError
 
 SIZE = (96, 72)
 NOTHING_MEASURED = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
@@ -186,13 +186,6 @@ def test_frames_do_not_go_into_a_file(tmp_path):
     (tmp_path / "frames").touch()
     with pytest.raises(InputError, match=r"frames: this is a file; give the name of a folder$"):
         frames_to([row()], tmp_path / "frames", SIZE)
-
-
-def test_atoms_have_the_color_of_their_group():
-    where = Origin("groups", "g", "x.yaml", 1)
-    color = atom_color([GroupSpan("a", 0, 2, "#000000", where), GroupSpan("b", 2, 3, "#ff00ff", where)])
-    assert color.tolist() == [[0, 0, 0], [0, 0, 0], [1, 0, 1]]
-    assert atom_color([]).shape == (0, 3)
 
 
 def test_matplotlib_waits_until_it_is_needed():

@@ -138,8 +138,14 @@ _SELECTION_SCHEMA = {
     "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}],
 }
 
+SelectionText = Annotated[str, AfterValidator(_check_selection)]
+"""One selection expression: `ring`, `ring[0:10]`, `floor[0, :]` or `all`."""
+
+Colors = Annotated[dict[SelectionText, Color], BeforeValidator(_drop_nulls)]
+"""Colours by selection."""
+
 Selection = Annotated[
-    tuple[Annotated[str, AfterValidator(_check_selection)], ...],
+    tuple[SelectionText, ...],
     Field(strict=False),
     BeforeValidator(_as_list),
     WithJsonSchema(_SELECTION_SCHEMA),

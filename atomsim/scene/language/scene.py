@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 from atomsim.scene.language.base import (
     AxisLetter,
     Color,
+    Colors,
     Count,
     Declaration,
     Named,
@@ -55,8 +56,8 @@ class Render(Declaration):
     """The rounds that make the strip; by default six evenly spread ones."""
     camera: Camera = Field(default_factory=Camera)
     """From where the scene is seen."""
-    colors: Named[Color] = Field(default_factory=dict)
-    """Colours by group; they go before the group's own `color`."""
+    colors: Colors = Field(default_factory=dict)
+    """Colours by group or selection, such as `ring[0:5]: gold`; they cover the groups' own, and later ones earlier ones."""
     background: Color = "#f5f5f7"
     """Colour behind the atoms."""
 
