@@ -133,6 +133,7 @@ def test_bound_atoms_at_the_same_place() -> None:
         ({"between": ["b", ["a", "b"]]}, "b[1] and a[3]"),
         ({"among": ["a[0]", "b", "a[3:]"]}, "b[1] and a[3]"),
         ({"between": ["a", "a"]}, "a[1] and a[3]"),
+        ({"between": ["a", "a[1]"]}, "a[3] and a[1]"),
     ],
 )
 def test_colliding_atoms_at_the_same_place(collisions: dict[str, Any], pair: str) -> None:
