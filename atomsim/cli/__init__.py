@@ -5,23 +5,52 @@ from __future__ import annotations
 import os
 import sys
 
+INTERRUPTED = 130
+
 
 def main() -> None:
     """Run the command line and end the process with its exit code: the entry point of `atomsim`."""
+    try:
+        from atomsim.cli.output import prepare, tell
+        from atomsim.errors import AtomsimError
+
+        prepare()
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
+    try:
+        _run_command()
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    except AtomsimError as error:
+        tell(str(error))
+        code = error.exit_code
+    except MemoryError as error:
+        tell(str(error) or "not enough memory for this; fewer atoms, pairs or frames at a time need less")
+        code = 1
+    except BrokenPipeError:  # whoever read our output has seen enough
+        code = 1
+    except OSError as error:
+        tell(f"{error.filename or 'the output'}: {error.strerror or error}")
+        code = 1
+    _give_output_up()
+    sys.exit(code)
+
+
+def _run_command() -> None:
+    """Do what was typed, until all that it printed has arrived; ends in SystemExit or in an error."""
     from atomsim.cli.app import app
-    from atomsim.errors import AtomsimError
 
     try:
         app()
-    except AtomsimError as error:
-        print(error, file=sys.stderr)
-        sys.exit(error.exit_code)
-    except MemoryError:
-        print("not enough memory for this; fewer atoms, pairs or frames at a time need less", file=sys.stderr)
-        sys.exit(1)
-    except BrokenPipeError:  # whoever read our output has seen enough
+    finally:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+
+
+def _give_output_up() -> None:
+    """Forget what cannot be printed, or Python would try again at the very end, in vain and loudly."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
-    except OSError as error:
-        print(f"{error.filename or 'the system'}: {error.strerror or error}", file=sys.stderr)
-        sys.exit(1)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from atomsim.cli.output import say, tell
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,7 +52,7 @@ def record(
                 log.write(
                     f"- {scene.stem}: round {last_round} is {digest[:16]}…: {reason.strip() or 'first recording'}\n"
                 )
-            print(f"{path}: {len(made.digests)} digests, {len(made.frames)} frames")
+            say(f"{path}: {len(made.digests)} digests, {len(made.frames)} frames")
     except OSError as error:
         raise RunError(f"{into}: cannot be written: {error.strerror}") from None
 
@@ -73,15 +74,15 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER) -> None:
         path = golden_path(scene, into)
         if not path.exists():
             n_wrong += 1
-            print(f"{scene}: there is no golden {path}; record it with: atomsim golden record {scene} --into {into}")
+            say(f"{scene}: there is no golden {path}; record it with: atomsim golden record {scene} --into {into}")
             continue
         model, frames = _computed(scene)
         approved = read_golden(path)
         wrong = check_golden(approved, frames, model.groups)
         n_wrong += wrong is not None
-        print(f"{scene}: {wrong or f'identical, {len(approved.digests)} rounds'}")
+        say(f"{scene}: {wrong or f'identical, {len(approved.digests)} rounds'}")
     if n_wrong:
-        print(f"{n_wrong} of {len(scenes)} scenes differ from their goldens", file=sys.stderr)
+        tell(f"{n_wrong} of {len(scenes)} scenes differ from their goldens")
         raise typer.Exit(1)
 
 

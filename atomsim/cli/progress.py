@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
+from types import TracebackType
 
 REFRESH_SECONDS = 0.1
 """How often the line is written anew."""
@@ -12,16 +14,26 @@ REFRESH_SECONDS = 0.1
 class Progress:
     """Reports rounds per second and time left on a terminal, and nothing where nobody watches.
 
+    A context manager, which takes the line away at its end.
+
     Args:
         is_shown: whether to write at all; by default where standard error is a terminal.
     """
 
     def __init__(self, is_shown: bool | None = None) -> None:
         self._begin: int | None = None
-        self._is_shown = sys.stderr.isatty() if is_shown is None else is_shown
+        self._is_shown = sys.stderr is not None and sys.stderr.isatty() if is_shown is None else is_shown
         self._started = time.monotonic()
         self._written = 0.0
         self._width = 0
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        if self._width:
+            self._write("")
+            self._send("\r")
 
     def report(self, round_index: int, rounds: int) -> None:
         """Say which round of how many has been reached; the first call tells where the run begins."""
@@ -32,17 +44,15 @@ class Progress:
             self._written = now
             self._write(progress_line(self._begin, round_index, rounds, now - self._started))
 
-    def clear(self) -> None:
-        """Take the line away."""
-        if self._width:
-            self._write("")
-            sys.stderr.write("\r")
-            sys.stderr.flush()
-
     def _write(self, line: str) -> None:
-        sys.stderr.write("\r" + line.ljust(self._width))
-        sys.stderr.flush()
+        self._send("\r" + line.ljust(self._width))
         self._width = len(line)
+
+    def _send(self, text: str) -> None:
+        """Write; a run of hours does not end because its terminal is gone."""
+        with contextlib.suppress(OSError):
+            sys.stderr.write(text)
+            sys.stderr.flush()
 
 
 def progress_line(begin: int, round_index: int, rounds: int, seconds: float) -> str:

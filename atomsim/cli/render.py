@@ -7,6 +7,8 @@ from typing import Annotated, TypeVar
 
 import typer
 
+from atomsim.cli.output import say
+
 Part = TypeVar("Part", int, float)
 
 
@@ -48,13 +50,13 @@ def render(
         written = pictures.render_frames(
             trajectories, frames, rounds=wanted, camera=angles, size=pixels, notice=_notice
         )
-        print(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
+        say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
     picture = trajectories[0].with_suffix(".png") if output is None else output
     if picture.exists() and not force and not is_our_picture(picture):
         raise InputError(f"{picture} exists and atomsim did not draw it; add --force to replace it")
     pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels, notice=_notice)
-    print(picture)
+    say(str(picture))
 
 
 def _notice(message: str) -> None:

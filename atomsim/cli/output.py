@@ -1,0 +1,49 @@
+"""What reaches the terminal: text that it can show and never takes for a command; knows no scene and no trajectory."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+import sys
+
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+"""Characters by which a text could command the terminal; line breaks and tabs only lay it out."""
+
+
+def prepare() -> None:
+    """Make printing fail on no character and hit no file.
+
+    What is not a terminal gets UTF-8; a terminal gets escapes where its encoding lacks a character. A stream that was
+    closed from outside is opened on nothing, or the next file to be opened would take its place and its messages.
+    """
+    for fd in range(3):
+        try:
+            os.fstat(fd)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            encoding = stream.encoding if stream.isatty() else "utf-8"
+            stream.reconfigure(encoding=encoding, errors="backslashreplace")
+
+
+def say(text: str) -> None:
+    """Print a result."""
+    print(visible(text))
+
+
+def tell(message: str) -> None:
+    """Print a message beside the results, if anybody can hear it."""
+    with contextlib.suppress(OSError):
+        print(visible(message), file=sys.stderr, flush=True)
+
+
+def visible(text: str) -> str:
+    r"""Write control characters out; titles, names and paths come from other people's files.
+
+    >>> print(visible("red \x1b[31malert\x07"))
+    red \x1b[31malert\x07
+    """
+    return _CONTROL.sub(lambda match: f"\\x{ord(match.group()):02x}", text)
