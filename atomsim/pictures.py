@@ -12,7 +12,7 @@ from typing import TypeAlias
 from atomsim.compiler.colors import atom_color
 from atomsim.drawing import Row, View, compose, frames_to
 from atomsim.errors import InputError
-from atomsim.scene import loads
+from atomsim.inside import compile_inside
 from atomsim.trajectory import Trajectory
 
 Notice: TypeAlias = Callable[[str], None]
@@ -85,8 +85,8 @@ def _row(
     trajectory: Trajectory, rounds: Sequence[int] | None, camera: tuple[float, float] | None, *, every: bool
 ) -> Row:
     """Choose the frames of one trajectory and from where they are seen."""
-    header = trajectory.header
-    scene = loads(header.scene, header.scene_name).scene
+    inside, _, _ = compile_inside(trajectory.header, trajectory.path)  # compiled only to be sure that it fits
+    scene = inside.scene
     chosen = scene.render
     wanted = trajectory.rounds.tolist() if rounds is None and every else rounds
     asked = _asked(trajectory, wanted, chosen.rounds)

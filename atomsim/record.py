@@ -14,8 +14,10 @@ from atomsim.core.forecast import forecast
 from atomsim.core.memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
-from atomsim.errors import BlowUpError, RunError
-from atomsim.scene import LoadedScene, loads
+from atomsim.errors import BlowUpError, InputError, RunError
+from atomsim.inside import compile_inside
+from atomsim.scene import LoadedScene
+from atomsim.scene.difference import differences
 from atomsim.trajectory import End, Header, Recorder, trajectory_bytes
 
 Report: TypeAlias = Callable[[int, int], None]
@@ -92,7 +94,13 @@ def run(
         return _record(recorder, model, state, report)
 
 
-def resume(path: str | os.PathLike[str], *, rounds: int | None = None, report: Report | None = None) -> Outcome:
+def resume(
+    path: str | os.PathLike[str],
+    *,
+    rounds: int | None = None,
+    scene: LoadedScene | None = None,
+    report: Report | None = None,
+) -> Outcome:
     """Go on with a trajectory from its last frame; the scene is inside it.
 
     The finished file is the one that an uninterrupted run would have written, byte for byte.
@@ -100,17 +108,39 @@ def resume(path: str | os.PathLike[str], *, rounds: int | None = None, report: R
     Args:
         path: the trajectory, finished or stopped.
         rounds: total rounds to do; as planned before by default.
+        scene: the scene that it is thought to be a run of.
         report: hears how far the run is.
 
     Raises:
-        InputError: there is no such trajectory, it is damaged, or it has done these rounds already.
+        InputError: there is no such trajectory, it is damaged, it is one of another scene, or it has done these rounds
+            already.
         RunError: it cannot be written, or another run writes it.
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
-    with Recorder.resume(Path(path), rounds=rounds) as recorder:
-        loaded = loads(recorder.header.scene, recorder.header.scene_name)
-        model, first = compile_scene(loaded.scene, loaded.source)
-        return _record(recorder, model, recorder.state or first, report)
+    path = Path(path)
+    compiled: list[tuple[Model, State]] = []
+
+    def accept(header: Header) -> None:
+        inside, model, first = compile_inside(header, path)
+        if scene is not None:
+            _require_same(inside, scene, path)
+        _require_disk(path, header)
+        compiled.append((model, first))
+
+    with Recorder.resume(path, rounds=rounds, accept=accept) as recorder:
+        model, first = compiled[0]
+        return _record(recorder, model, first, report)
+
+
+def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
+    """Refuse to go on with a scene that was changed: the file would be the run of no scene."""
+    changed = differences(inside.scene, scene.scene)
+    if changed:
+        raise InputError(
+            f"{path} is a run of another scene than {scene.source.name} is now:\n"
+            + "".join(f"  {line}\n" for line in changed)
+            + f"go on with the scene inside, without naming one, or run {scene.source.name} into a new file with -o"
+        )
 
 
 def _require_disk(path: Path, header: Header) -> None:
@@ -127,10 +157,19 @@ def _require_disk(path: Path, header: Header) -> None:
         )
 
 
-def _record(recorder: Recorder, model: Model, state: State, report: Report | None) -> Outcome:
-    """Compute and record the frames that are due, and finish the file, however the run ends."""
-    header, first_round = recorder.header, state.round_index
+def _record(recorder: Recorder, model: Model, first: State, report: Report | None) -> Outcome:
+    """Compute and record the frames that are due, and finish the file, however the run ends.
+
+    Args:
+        recorder: knows where a resumed run goes on.
+        model: the compiled scene.
+        first: where the scene begins.
+        report: hears how far the run is.
+    """
+    header = recorder.header
     is_recorded = recorder.state is not None  # a resumed run begins with a frame that is there already
+    state = recorder.state or first
+    first_round = state.round_index
     end, blow_up = End("finished"), None
     digest = ""
 
@@ -139,7 +178,7 @@ def _record(recorder: Recorder, model: Model, state: State, report: Report | Non
             report(round_index, header.rounds)
 
     try:
-        for frame in simulate(model, state, header.rounds, header.record_every, report=report_round):
+        for frame in simulate(model, state, header.rounds, header.record_every, report=report_round, first=first):
             if not is_recorded:
                 recorder.append(frame)
             is_recorded = False

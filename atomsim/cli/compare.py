@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.output import say
+
 
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="A trajectory.")],
@@ -26,14 +28,14 @@ def compare(
 
     with Trajectory(first) as one, Trajectory(second) as other:
         if one.header.n_atoms != other.header.n_atoms:
-            print(f"different: {first} has {one.header.n_atoms} atoms, {second} {other.header.n_atoms}")
+            say(f"different: {first} has {one.header.n_atoms} atoms, {second} {other.header.n_atoms}")
             raise typer.Exit(1)
         difference = first_difference(one, other, one.header.groups, tolerance)
         if difference is not None:
-            print(f"different: {difference}")
+            say(f"different: {difference}")
             raise typer.Exit(1)
         within = f" within {tolerance:g}" if tolerance else ""
-        print(f"identical{within}: {len(one)} frames up to round {one.rounds[-1]}")
+        say(f"identical{within}: {len(one)} frames up to round {one.rounds[-1]}")
 
 
 def verify(trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")]) -> None:
@@ -46,19 +48,17 @@ def verify(trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A tra
     atomsim verify out.h5
     """
     from atomsim.compare import first_difference
-    from atomsim.compiler import compile_scene
     from atomsim.core.simulate import simulate
-    from atomsim.scene import loads
+    from atomsim.inside import compile_inside
     from atomsim.trajectory import Trajectory
 
     with Trajectory(trajectory) as recorded:
         header = recorded.header
-        loaded = loads(header.scene, header.scene_name)
-        model, state = compile_scene(loaded.scene, loaded.source)
+        _, model, state = compile_inside(header, trajectory)
         last_round = int(recorded.rounds[-1])
         computed = simulate(model, state, last_round, header.record_every)
         difference = first_difference(recorded, computed, header.groups)
         if difference is not None:
-            print(f"different: {difference} (first: the file; second: computed now)")
+            say(f"different: {difference} (first: the file; second: computed now)")
             raise typer.Exit(1)
-        print(f"identical: {len(recorded)} frames up to round {last_round} are what the scene gives")
+        say(f"identical: {len(recorded)} frames up to round {last_round} are what the scene gives")

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atomsim.cli.output import say, tell
+
 if TYPE_CHECKING:
     from atomsim.trajectory import Trajectory
 
@@ -26,7 +28,6 @@ def check(
 
     atomsim check scenes/*.yaml
     """
-    import sys
 
     from atomsim.cli.describe import describe_model
     from atomsim.compiler import compile_scene
@@ -40,11 +41,11 @@ def check(
             model, state = compile_scene(loaded.scene, loaded.source)
         except SceneError as error:
             n_wrong += 1
-            print(error, file=sys.stderr)
+            tell(str(error))
         else:
             scene = loaded.scene
-            print(f"{path}: {scene.title}" if scene.title else path)
-            print("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
+            say(f"{path}: {scene.title}" if scene.title else str(path))
+            say("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
     if n_wrong:
         raise typer.Exit(2)
 
@@ -63,15 +64,16 @@ def show(
     from atomsim.cli.describe import describe_trajectory
 
     with Trajectory(trajectory) as frames:
-        print(_scene_of(frames) if scene else "\n".join(describe_trajectory(frames)))
+        say(_scene_of(frames) if scene else "\n".join(describe_trajectory(frames)))
 
 
 def _scene_of(trajectory: Trajectory) -> str:
     """Return the scene that gives this trajectory: the one inside, with the rounds that were asked for."""
+    from atomsim.inside import scene_inside
     from atomsim.scene import loads
 
     header = trajectory.header
-    loaded = loads(header.scene, header.scene_name)
+    loaded = scene_inside(header, trajectory.path)
     if loaded.scene.rounds != header.rounds:
         loaded = loads(header.scene, header.scene_name, [f"rounds={header.rounds}"])
     return loaded.source.text.rstrip("\n")

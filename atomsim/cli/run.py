@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import sys
+import shlex
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from atomsim.cli.output import say, tell
 
 if TYPE_CHECKING:
     from atomsim.record import Outcome
@@ -27,7 +29,8 @@ def run(
     ] = None,
     compress: Annotated[bool, typer.Option("--compress", help="Write a smaller file, slowly.")] = False,
     resume: Annotated[
-        Path | None, typer.Option(metavar="OUT", help="Go on with this trajectory; the scene is inside.")
+        Path | None,
+        typer.Option(metavar="OUT", help="Go on with this trajectory; it holds its scene."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the trajectory if it exists.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
@@ -40,33 +43,30 @@ def run(
 
     atomsim run --resume rods.h5 --rounds 8000
     """
+    from atomsim import record
     from atomsim.cli.progress import Progress
     from atomsim.cli.signals import wishes_to_stop
     from atomsim.errors import InputError
+    from atomsim.scene import load
 
-    if resume is not None and (scene is not None or settings or output != DEFAULT_OUTPUT or force or compress):
-        raise InputError("--resume takes only --rounds, --backend, --threads and --quiet: the scene is in the file")
-    if resume is None and scene is None:
+    if resume is not None and (output != DEFAULT_OUTPUT or force or compress):
+        raise InputError("--resume goes on with the file that it names; -o, --force and --compress do not go with it")
+    if scene is None and (resume is None or settings):
         raise InputError("name a scene to run, as in: atomsim run scenes/rods.yaml")
     started = time.monotonic()
-    progress = Progress(is_shown=False if quiet else None)
-    with wishes_to_stop() as wish:
+    loaded = None if scene is None else load(scene, settings or ())
+    with wishes_to_stop(_to_go_on(resume or output)) as wish, Progress(is_shown=False if quiet else None) as progress:
 
-        def report(round_index: int, rounds: int) -> None:
-            progress.report(round_index, rounds)
-            if wish.signal_number is not None:
-                raise StopWishedError
-
-        from atomsim import record
-        from atomsim.record import StopWishedError
+        def report(round_index: int, last_round: int) -> None:
+            progress.report(round_index, last_round)
+            if wish.is_wished():
+                raise record.StopWishedError
 
         if resume is not None:
-            outcome = record.resume(resume, rounds=rounds, report=report)
-        elif scene is not None:
-            from atomsim.scene import load
-
+            outcome = record.resume(resume, rounds=rounds, scene=loaded, report=report)
+        elif loaded is not None:
             outcome = record.run(
-                load(scene, settings or ()),
+                loaded,
                 output,
                 rounds=rounds,
                 replace=force,
@@ -74,13 +74,8 @@ def run(
                 report=report,
                 warn=None if quiet else _warn,
             )
-        progress.clear()
     if wish.signal_number is not None and outcome.end.kind == "interrupted":
-        print(
-            f"stopped after round {outcome.last_round} of {outcome.rounds}; "
-            f"to go on: atomsim run --resume {outcome.path}",
-            file=sys.stderr,
-        )
+        tell(f"stopped after round {outcome.last_round} of {outcome.rounds}; {_to_go_on(outcome.path)}")
         raise typer.Exit(128 + wish.signal_number)
     if not quiet:
         _summarise(outcome, time.monotonic() - started)
@@ -100,11 +95,15 @@ def recover(
 
     rebuild(trajectory)
     with Trajectory(trajectory) as frames:
-        print(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")
+        say(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")
 
 
 def _warn(warning: str) -> None:
-    print(f"warning: {warning}", file=sys.stderr)
+    tell(f"warning: {warning}")
+
+
+def _to_go_on(path: Path) -> str:
+    return f"to go on: atomsim run --resume {shlex.quote(str(path))}"
 
 
 def _summarise(outcome: Outcome, seconds: float) -> None:
@@ -114,6 +113,6 @@ def _summarise(outcome: Outcome, seconds: float) -> None:
 
     n_rounds = outcome.last_round - outcome.first_round
     size = readable_bytes(outcome.path.stat().st_size)
-    print(f"{outcome.path}: {n_rounds:,} rounds in {seconds:.2f} s ({rate(n_rounds / seconds)} rounds/s), {size}")
-    print(f"digest of round {outcome.last_round}: {outcome.digest}")
-    print(f"next: atomsim render {outcome.path}")
+    say(f"{outcome.path}: {n_rounds:,} rounds in {seconds:.2f} s ({rate(n_rounds / seconds)} rounds/s), {size}")
+    say(f"digest of round {outcome.last_round}: {outcome.digest}")
+    say(f"next: atomsim render {shlex.quote(str(outcome.path))}")

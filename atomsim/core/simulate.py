@@ -37,6 +37,7 @@ def simulate(
     record_every: int = 10,
     make_stepper: MakeStepper = NumpyStepper,
     report: Callable[[int], None] | None = None,
+    first: State | None = None,
 ) -> Iterator[Frame]:
     """Yield the frames of a run: its first state, every `record_every` rounds, and its last round.
 
@@ -46,7 +47,9 @@ def simulate(
         rounds: the round to run to.
         record_every: rounds between two frames; frames fall on its multiples.
         make_stepper: the backend.
-        report: called at the start and then several times a second with the round reached; what it raises ends the run.
+        report: called after the first frame and then several times a second with the round reached; what it raises ends
+            the run.
+        first: where the scene begins, if `state` is a later round; what is said of a blow-up depends on it.
 
     Yields:
         Frames in order of rounds.
@@ -55,19 +58,18 @@ def simulate(
         BlowUpError: a number left the finite or an atom flew off; all frames before have been yielded.
     """
     observer = Observer(model)
-    first = state
+    first = first or state
     stepper = make_stepper(model, state)
+    yield frame_of(model, state, observer)
     if report is not None:
         report(state.round_index)
-    while True:
-        yield frame_of(model, state, observer)
-        if state.round_index >= rounds:
-            return
+    while state.round_index < rounds:
         next_round = min(rounds, (state.round_index // record_every + 1) * record_every)
         _advance(stepper, state.round_index, next_round, report)
         before, state = state, stepper.state()
         if not is_sound(model, state):
             raise _blow_up(model, first, before, make_stepper)
+        yield frame_of(model, state, observer)
 
 
 def _advance(stepper: Stepper, round_index: int, stop: int, report: Callable[[int], None] | None) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import time
+from collections.abc import Callable
 from dataclasses import replace as with_changes
 from pathlib import Path
 from types import TracebackType
@@ -19,7 +20,7 @@ from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal import Journal
 from atomsim.trajectory.reader import Trajectory
 from atomsim.trajectory.records import journal_path
-from atomsim.trajectory.rows import fill, row_dtype
+from atomsim.trajectory.rows import fill, frame_of, row_dtype
 from atomsim.trajectory.writer import JournalWriter
 
 BLOCK_SECONDS = 1.0
@@ -62,7 +63,13 @@ class Recorder:
         self._set_up(path, header, writer, None)
 
     @classmethod
-    def resume(cls, path: str | os.PathLike[str], *, rounds: int | None = None) -> Recorder:
+    def resume(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        rounds: int | None = None,
+        accept: Callable[[Header], None] = lambda header: None,
+    ) -> Recorder:
         """Go on with a run that was stopped, from its last frame, `state`.
 
         The finished file will have the very bytes that a run without a stop would have given it. So the last frame
@@ -72,21 +79,25 @@ class Recorder:
         Args:
             path: the trajectory.
             rounds: total rounds to do; as planned before by default.
+            accept: called once with the header, before any file is changed; what it raises refuses to go on.
 
         Raises:
-            InputError: there is no such trajectory, it is damaged, or has done these rounds already.
+            InputError: there is no such trajectory, it is damaged, blew up, or has done these rounds already.
             RunError: it cannot be written, or another process writes it.
         """
         path = _trajectory_path(path)
-        if not _has_journal(path):
-            _turn_back(path, rounds)
+        has_journal = _has_journal(path)
+        if not has_journal:
+            _turn_back(path, rounds, accept)
         writer = JournalWriter.reopen(journal_path(path))
         try:
             with reading(writer.path), contextlib.closing(writer.read()) as journal:
                 state = _last_state(journal)
-                header = with_changes(journal.header, rounds=journal.header.rounds if rounds is None else rounds)
+                header = _planned(journal.header, rounds)
                 if state is not None and state.round_index > header.rounds:
                     raise _done_already(path, state.round_index)
+                if has_journal:
+                    accept(header)
                 writer.cut(journal.whole)
             writer.go_on(header.rounds)
         except BaseException:
@@ -222,15 +233,23 @@ def _last_state(journal: Journal) -> State | None:
     last = len(journal.series) - 1
     if last < 0:
         return None
-    return State(int(journal.series["round"][last]), *journal.state(last))
+    return frame_of(journal.series[last], *journal.state(last), journal.header.time_step).state
 
 
-def _turn_back(path: Path, rounds: int | None) -> None:
+def _planned(header: Header, rounds: int | None) -> Header:
+    return header if rounds is None else with_changes(header, rounds=rounds)
+
+
+def _turn_back(path: Path, rounds: int | None, accept: Callable[[Header], None]) -> None:
     """Write a finished file back into a journal, complete before it appears; the file itself stays as it is."""
     with Trajectory(path) as trajectory:
         last_round = int(trajectory.rounds[-1])
-        if last_round >= (trajectory.header.rounds if rounds is None else rounds):
+        header = _planned(trajectory.header, rounds)
+        if trajectory.end.kind == "blew up":
+            raise InputError(f"{path}: blew up after round {last_round} and would again; change its scene and run that")
+        if last_round >= header.rounds:
             raise _done_already(path, last_round)
+        accept(header)
         writer = JournalWriter.begin(journal_path(path), trajectory.header)
         try:
             row = np.empty(1, row_dtype(trajectory.header.n_atoms))

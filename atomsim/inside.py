@@ -1,0 +1,78 @@
+"""The scene inside a trajectory, read and compiled again with a stranger's file in mind; knows no terminal.
+
+A damaged or hostile file may hold any text for a scene, or a scene of other atoms than its frames.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from atomsim.compiler import compile_scene
+from atomsim.core.model import Model, State
+from atomsim.errors import InputError, SceneError
+from atomsim.scene import LoadedScene, loads
+from atomsim.trajectory import Header
+
+
+def scene_inside(header: Header, path: Path) -> LoadedScene:
+    """Return the scene that a trajectory holds.
+
+    Args:
+        header: what the trajectory says besides its frames.
+        path: the trajectory, for messages.
+
+    Raises:
+        InputError: it is no valid scene.
+    """
+    try:
+        return loads(header.scene, header.scene_name)
+    except SceneError as error:
+        raise _broken(path, error) from None
+
+
+def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, State]:
+    """Return the scene that a trajectory holds, compiled: its model and first state.
+
+    Args:
+        header: what the trajectory says besides its frames.
+        path: the trajectory, for messages.
+
+    Raises:
+        InputError: it is no valid scene, or not that of the frames.
+    """
+    loaded = scene_inside(header, path)
+    try:
+        model, state = compile_scene(loaded.scene, loaded.source)
+    except SceneError as error:
+        raise _broken(path, error) from None
+    recompiled = Header.of(
+        model,
+        scene_text=header.scene,
+        scene_name=header.scene_name,
+        rounds=header.rounds,
+        record_every=loaded.scene.record_every,
+    )
+    differing = _differing(header, recompiled)
+    if differing is not None:
+        raise InputError(f"{path}: damaged, or made to mislead: the scene inside has other {differing} than the frames")
+    return loaded, model, state
+
+
+def _broken(path: Path, error: SceneError) -> InputError:
+    problem = error.problems[0]
+    return InputError(f"{path}: damaged, or not a trajectory of atomsim (the scene inside: {problem})")
+
+
+def _differing(one: Header, other: Header) -> str | None:
+    """Say in what two headers of one scene differ, if they do; rounds may, they are asked for with each run."""
+    if one.n_atoms != other.n_atoms:
+        return "atoms"
+    if [(group.name, group.start) for group in one.groups] != [(group.name, group.start) for group in other.groups]:
+        return "groups"
+    if not (np.array_equal(one.bond, other.bond) and np.array_equal(one.bond_table, other.bond_table)):
+        return "bonds"
+    if one.time_step != other.time_step:
+        return "time steps"
+    return "rounds to record" if one.record_every != other.record_every else None
