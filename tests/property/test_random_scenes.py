@@ -8,16 +8,14 @@ from unittest.mock import patch
 from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 from support.oracle import build
-from support.running import after, digest_of, is_finite, scene_of
+from support.running import after, digest_of, is_finite, without_mistakes
 from support.strategies import scenes
 
-from atomsim.compiler import compile_scene
 from atomsim.core import bonds, collisions
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
 from atomsim.core.stepper import NumpyStepper
-from atomsim.errors import BlowUpError, SceneError
-from atomsim.scene.language import Scene
+from atomsim.errors import BlowUpError
 
 ROUNDS = 12
 
@@ -28,17 +26,6 @@ FORMS = {
     "general": {"DENSE_FILL": 2.0, "FEW_PAIRS": 0, "RUN_PAIRS": 10**9},
 }
 """Thresholds that leave one form of bonds only."""
-
-
-def without_mistakes(data: dict[str, Any]) -> tuple[Scene, Model, State]:
-    """Compile random data without the declarations that make no sense for the groups they name."""
-    while True:
-        scene = scene_of(**data)
-        try:
-            return scene, *compile_scene(scene)
-        except SceneError as error:
-            for section, name in {tuple(problem.path.split(".")[:2]) for problem in error.problems}:
-                data = {**data, section: {key: value for key, value in data[section].items() if key != name}}
 
 
 def finite_run(data: dict[str, Any]) -> tuple[Model, State, str]:

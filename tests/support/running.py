@@ -11,6 +11,7 @@ from atomsim.compiler import compile_scene
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Model, State
 from atomsim.core.stepper import NumpyStepper
+from atomsim.errors import SceneError
 from atomsim.scene.language import Scene
 from atomsim.scene.loader import load
 
@@ -32,6 +33,17 @@ def paper_scene(name: str) -> Scene:
 def compiled(groups: dict[str, Any], time_step: float = 0.05, **sections: Any) -> tuple[Model, State]:
     """Compile a scene written as Python data."""
     return compile_scene(scene_of(groups, time_step, **sections))
+
+
+def without_mistakes(data: dict[str, Any]) -> tuple[Scene, Model, State]:
+    """Compile random data without the declarations that make no sense for the groups they name."""
+    while True:
+        scene = scene_of(**data)
+        try:
+            return scene, *compile_scene(scene)
+        except SceneError as error:
+            for section, name in {tuple(problem.path.split(".")[:2]) for problem in error.problems}:
+                data = {**data, section: {key: value for key, value in data[section].items() if key != name}}
 
 
 def after(model: Model, state: State, n_rounds: int) -> State:

@@ -149,13 +149,18 @@ def _keep_partners(query: int, queries: Queries, grids: Grids, partner: Indices,
 
 @inner
 def _sort_distinct(partner: Indices, first: int, end: int) -> int:
-    """Sort a few partners and drop those that come twice; return the new end."""
-    for number in range(first + 1, end):
-        found, place = partner[number], number
-        while place > first and partner[place - 1] > found:
-            partner[place] = partner[place - 1]
-            place -= 1
-        partner[place] = found
+    """Sort partners, mostly few, and drop those that come twice; return the new end. (Shell's sort.)"""
+    gap = 1
+    while gap < (end - first) // 3:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for number in range(first + gap, end):
+            found, place = partner[number], number
+            while place >= first + gap and partner[place - gap] > found:
+                partner[place] = partner[place - gap]
+                place -= gap
+            partner[place] = found
+        gap //= 3
     kept = first
     for number in range(first, end):
         if kept == first or partner[kept - 1] != partner[number]:

@@ -59,8 +59,8 @@ def plan_grids(tables: Sequence[CollisionTable], margin: int) -> Grids:
 
 
 def _n_buckets(n_asking: int, n_targets: int) -> int:
-    """Return a power of two, one to two buckets per target, or 1 for looking at all."""
-    return 1 if min(n_asking, n_targets) <= FEW else 1 << n_targets.bit_length()
+    """Return a power of two, one to two buckets per target but no fewer than four, or 1 for looking at all."""
+    return 1 if min(n_asking, n_targets) <= FEW else 1 << max(2, n_targets.bit_length())
 
 
 def plan_queries(tables: Sequence[CollisionTable], atoms: range, held: Indices, margin: int) -> Queries:

@@ -11,6 +11,7 @@ import numpy as np
 
 from atomsim.core.collisions import SKIN, better_skin, involved_atoms, squared_reach
 from atomsim.core.forces import held_atoms
+from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.numba_backend.bond_plan import plan_bonds
 from atomsim.core.numba_backend.force_plan import Pushes, in_order, plan_forces, runs_of
@@ -141,9 +142,16 @@ class _Share:
         return int(self._near.row_first_entry[self._near.table_first_row[-1]])
 
     def find_near_pairs(self, position: Floats, cutoff: float, grids: Grids) -> None:
-        """Make the list of near pairs anew, with more room if it needs more."""
+        """Make the list of near pairs anew, with more room if it needs more.
+
+        Raises:
+            MemoryError: so many pairs are near that they would not fit.
+        """
         while not find_near(position, cutoff, self._queries, grids, self._near):
-            self._near = empty_list(self._queries, 2 * self._near.entry_partner.size)
+            n_entries = 2 * self._near.entry_partner.size
+            if n_entries * self._near.entry_partner.itemsize > free_memory():
+                raise MemoryError(f"more than {n_entries // 4:,} pairs are near each other, too many for memory")
+            self._near = empty_list(self._queries, n_entries)
 
     def advance(
         self, time_step: float, motion: Motion, forces: Forces, pushes: Floats, limit: float
