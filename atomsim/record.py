@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from atomsim.compiler import compile_scene
+from atomsim.core.backends import Backend, choose
 from atomsim.core.forecast import forecast
 from atomsim.core.memory import readable_bytes
 from atomsim.core.model import Model, State
@@ -39,6 +40,7 @@ class Outcome:
         last_round: the round of the last frame.
         digest: the state digest of the last frame.
         end: whether it finished or was interrupted.
+        backend: what computed it, and why that.
     """
 
     path: Path
@@ -47,6 +49,7 @@ class Outcome:
     last_round: int
     digest: str
     end: End
+    backend: Backend
 
 
 def run(
@@ -56,6 +59,8 @@ def run(
     rounds: int | None = None,
     replace: bool = False,
     compress: bool = False,
+    backend: str = "auto",
+    threads: int | None = None,
     report: Report | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> Outcome:
@@ -67,6 +72,8 @@ def run(
         rounds: iteration rounds to run; as the scene says by default.
         replace: whether an older trajectory of that name may go.
         compress: whether to write a smaller file, slowly.
+        backend: `auto`, `numpy` or `numba`; whichever it is, the trajectory has the same bits.
+        threads: how many threads to use; by default as many as are worth it.
         report: hears how far the run is.
         warn: hears, before the run begins, what it is likely to do wrong.
 
@@ -77,6 +84,7 @@ def run(
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
     model, state = compile_scene(scene.scene, scene.source)
+    chosen = choose(backend, threads, model, rounds or scene.scene.rounds)
     if warn is not None:
         for warning in forecast(model, state):
             warn(warning)
@@ -91,7 +99,7 @@ def run(
     )
     _require_disk(Path(path), header)
     with Recorder(Path(path), header, replace=replace) as recorder:
-        return _record(recorder, model, state, report)
+        return _record(recorder, model, state, chosen, report)
 
 
 def resume(
@@ -99,6 +107,8 @@ def resume(
     *,
     rounds: int | None = None,
     scene: LoadedScene | None = None,
+    backend: str = "auto",
+    threads: int | None = None,
     report: Report | None = None,
 ) -> Outcome:
     """Go on with a trajectory from its last frame; the scene is inside it.
@@ -109,6 +119,8 @@ def resume(
         path: the trajectory, finished or stopped.
         rounds: total rounds to do; as planned before by default.
         scene: the scene that it is thought to be a run of.
+        backend: as for `run`; it may be another one than before.
+        threads: how many threads to use.
         report: hears how far the run is.
 
     Raises:
@@ -119,6 +131,7 @@ def resume(
     """
     path = Path(path)
     compiled: list[tuple[Model, State]] = []
+    chosen: list[Backend] = []
 
     def accept(header: Header) -> None:
         inside, model, first = compile_inside(header, path)
@@ -126,10 +139,11 @@ def resume(
             _require_same(inside, scene, path)
         _require_disk(path, header)
         compiled.append((model, first))
+        chosen.append(choose(backend, threads, model, header.rounds))
 
     with Recorder.resume(path, rounds=rounds, accept=accept) as recorder:
         model, first = compiled[0]
-        return _record(recorder, model, first, report)
+        return _record(recorder, model, first, chosen[0], report)
 
 
 def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
@@ -157,13 +171,14 @@ def _require_disk(path: Path, header: Header) -> None:
         )
 
 
-def _record(recorder: Recorder, model: Model, first: State, report: Report | None) -> Outcome:
+def _record(recorder: Recorder, model: Model, first: State, backend: Backend, report: Report | None) -> Outcome:
     """Compute and record the frames that are due, and finish the file, however the run ends.
 
     Args:
         recorder: knows where a resumed run goes on.
         model: the compiled scene.
         first: where the scene begins.
+        backend: what computes it.
         report: hears how far the run is.
     """
     header = recorder.header
@@ -178,7 +193,9 @@ def _record(recorder: Recorder, model: Model, first: State, report: Report | Non
             report(round_index, header.rounds)
 
     try:
-        for frame in simulate(model, state, header.rounds, header.record_every, report=report_round, first=first):
+        for frame in simulate(
+            model, state, header.rounds, header.record_every, backend.make_stepper, report_round, first=first
+        ):
             if not is_recorded:
                 recorder.append(frame)
             is_recorded = False
@@ -190,4 +207,4 @@ def _record(recorder: Recorder, model: Model, first: State, report: Report | Non
     recorder.finish(end)
     if blow_up is not None:
         raise BlowUpError(f"{blow_up}\n{recorder.path} keeps the frames up to round {state.round_index}")
-    return Outcome(recorder.path, header.rounds, first_round, state.round_index, digest, end)
+    return Outcome(recorder.path, header.rounds, first_round, state.round_index, digest, end, backend)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.options import Backend, Threads
 from atomsim.cli.output import say
 
 
@@ -38,7 +39,11 @@ def compare(
         say(f"identical{within}: {len(one)} frames up to round {one.rounds[-1]}")
 
 
-def verify(trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")]) -> None:
+def verify(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
+    backend: Backend = "auto",
+    threads: Threads = None,
+) -> None:
     """Compute a trajectory again from the scene inside it and compare, bit for bit.
 
     Exit code 1 if it differs.
@@ -48,6 +53,7 @@ def verify(trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A tra
     atomsim verify out.h5
     """
     from atomsim.compare import first_difference
+    from atomsim.core.backends import choose
     from atomsim.core.simulate import simulate
     from atomsim.inside import compile_inside
     from atomsim.trajectory import Trajectory
@@ -56,7 +62,8 @@ def verify(trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A tra
         header = recorded.header
         _, model, state = compile_inside(header, trajectory)
         last_round = int(recorded.rounds[-1])
-        computed = simulate(model, state, last_round, header.record_every)
+        make_stepper = choose(backend, threads, model, last_round).make_stepper
+        computed = simulate(model, state, last_round, header.record_every, make_stepper)
         difference = first_difference(recorded, computed, header.groups)
         if difference is not None:
             say(f"different: {difference} (first: the file; second: computed now)")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atomsim.cli.options import Backend, Threads
 from atomsim.cli.output import say, tell
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def record(
 
 
 @golden.command()
-def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER) -> None:
+def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "auto", threads: Threads = None) -> None:
     """Run scenes and compare them with their goldens, bit for bit. A missing golden is a failure.
 
     Exit code 1 if any differs.
@@ -76,7 +77,7 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER) -> None:
             n_wrong += 1
             say(f"{scene}: there is no golden {path}; record it with: atomsim golden record {scene} --into {into}")
             continue
-        model, frames = _computed(scene)
+        model, frames = _computed(scene, backend, threads)
         approved = read_golden(path)
         wrong = check_golden(approved, frames, model.groups)
         n_wrong += wrong is not None
@@ -86,12 +87,15 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER) -> None:
         raise typer.Exit(1)
 
 
-def _computed(scene: Path) -> tuple[Model, Iterator[Frame]]:
+def _computed(scene: Path, backend: str = "auto", threads: int | None = None) -> tuple[Model, Iterator[Frame]]:
     """Return a scene's model and its frames, computed as they are asked for."""
     from atomsim.compiler import compile_scene
+    from atomsim.core.backends import choose
     from atomsim.core.simulate import simulate
     from atomsim.scene import load
 
     loaded = load(scene)
     model, state = compile_scene(loaded.scene, loaded.source)
-    return model, simulate(model, state, loaded.scene.rounds, loaded.scene.record_every)
+    rounds = loaded.scene.rounds
+    make_stepper = choose(backend, threads, model, rounds).make_stepper
+    return model, simulate(model, state, rounds, loaded.scene.record_every, make_stepper)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atomsim.cli.options import Backend, Threads
 from atomsim.cli.output import say, tell
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ def run(
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scene; may be repeated."),
     ] = None,
+    backend: Backend = "auto",
+    threads: Threads = None,
     compress: Annotated[bool, typer.Option("--compress", help="Write a smaller file, slowly.")] = False,
     resume: Annotated[
         Path | None,
@@ -63,7 +66,9 @@ def run(
                 raise record.StopWishedError
 
         if resume is not None:
-            outcome = record.resume(resume, rounds=rounds, scene=loaded, report=report)
+            outcome = record.resume(
+                resume, rounds=rounds, scene=loaded, backend=backend, threads=threads, report=report
+            )
         elif loaded is not None:
             outcome = record.run(
                 loaded,
@@ -71,6 +76,8 @@ def run(
                 rounds=rounds,
                 replace=force,
                 compress=compress,
+                backend=backend,
+                threads=threads,
                 report=report,
                 warn=None if quiet else _warn,
             )
@@ -114,5 +121,6 @@ def _summarise(outcome: Outcome, seconds: float) -> None:
     n_rounds = outcome.last_round - outcome.first_round
     size = readable_bytes(outcome.path.stat().st_size)
     say(f"{outcome.path}: {n_rounds:,} rounds in {seconds:.2f} s ({rate(n_rounds / seconds)} rounds/s), {size}")
+    say(f"computed by {outcome.backend}")
     say(f"digest of round {outcome.last_round}: {outcome.digest}")
     say(f"next: atomsim render {shlex.quote(str(outcome.path))}")
