@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from atomsim.core.collisions import CONTACT_SQUARED, table_pairs_near
+from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Between, CollisionTable, Indices, Model, State, atom_name
 from atomsim.core.near import squared_distance
-from atomsim.core.observables import potential
+from atomsim.core.observables import contact_potential
 from atomsim.core.stiffness import is_surely_stable, largest_time_step
 
 
@@ -62,7 +62,7 @@ def _overlaps(model: Model, state: State) -> list[str]:
         if first.size:
             squared = squared_distance(position[:, first], position[:, second])
             deepest = int(squared.argmin())
-            energy = float(potential(squared, CONTACT_SQUARED).sum()) / model.time_step
+            energy = float(contact_potential(squared).sum()) / model.time_step
             one, other = (atom_name(int(atoms[deepest]), model.groups) for atoms in (first, second))
             warnings.append(
                 f"{table.origin}: {first.size} pairs overlap at the start, most {one} and {other} "

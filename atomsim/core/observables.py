@@ -8,6 +8,9 @@ from atomsim.core.collisions import CONTACT_SQUARED, NearList
 from atomsim.core.model import BondTable, Floats, Indices, Model, Observables, State
 from atomsim.core.near import squared_distance
 
+STRETCH = 1 << 18
+"""So many pairs are measured at a time: a few megabytes per array."""
+
 
 class Observer:
     """Measures states of one model; remembers which collision pairs are near from one state to the next.
@@ -18,7 +21,7 @@ class Observer:
 
     def __init__(self, model: Model) -> None:
         self._time_step = model.time_step
-        self._bonds = model.bonds
+        self._bonds = [_Bonds(table) for table in model.bonds]
         self._near = NearList(model.collisions, model.n_atoms)
 
     def observe(self, state: State) -> Observables:
@@ -33,14 +36,14 @@ class Observer:
     def _observe(self, state: State) -> Observables:
         position, velocity = np.ascontiguousarray(state.position.T), np.ascontiguousarray(state.velocity.T)
         (x, y, z), (u, v, w) = position, velocity
-        bonds = sum(_bond_energy(table, position) for table in self._bonds)
+        bonds = sum(table.energy(position) for table in self._bonds)
         self._near.update(position)
         collisions, contacts = 0.0, 0
         for first, second in self._near.pairs:
             squared = _squared(position, first, second)
             squared = squared[squared < CONTACT_SQUARED]
             contacts += squared.size
-            collisions += float(potential(squared, CONTACT_SQUARED).sum())
+            collisions += float(contact_potential(squared).sum())
         return Observables(
             kinetic_energy=0.5 * float((velocity * velocity).sum()),
             potential_energy_bonds=float(bonds) / self._time_step,
@@ -51,9 +54,23 @@ class Observer:
         )
 
 
-def _bond_energy(table: BondTable, position: Floats) -> float:
-    """Return Σ U over the bonds of a table."""
-    return float(potential(_squared(position, table.first, table.second), table.rest_squared).sum())
+class _Bonds:
+    """The bonds of a table, cut into stretches that bound the memory their energy takes."""
+
+    def __init__(self, table: BondTable) -> None:
+        rest_squared = table.rest_squared
+        divisor = rest_squared if rest_squared.all() else np.where(rest_squared == 0.0, 1.0, rest_squared)
+        stretches = [slice(start, start + STRETCH) for start in range(0, table.first.size, STRETCH)]
+        self._stretches = [
+            (table.first[pairs], table.second[pairs], rest_squared[pairs], divisor[pairs]) for pairs in stretches
+        ]
+
+    def energy(self, position: Floats) -> float:
+        """Return Σ U."""
+        return sum(
+            float(_potential(_squared(position, first, second), rest_squared, divisor).sum())
+            for first, second, rest_squared, divisor in self._stretches
+        )
 
 
 def _squared(position: Floats, first: Indices, second: Indices) -> Floats:
@@ -61,8 +78,12 @@ def _squared(position: Floats, first: Indices, second: Indices) -> Floats:
     return squared_distance(np.take(position, first, axis=1), np.take(position, second, axis=1))
 
 
-def potential(squared: Floats, rest_squared: Floats | float) -> Floats:
-    """Return U = ½ (d² − r² − r² ln(d²/r²)); the logarithm's term vanishes with r."""
-    divisor = rest_squared if np.all(rest_squared) else np.where(np.equal(rest_squared, 0.0), 1.0, rest_squared)
+def contact_potential(squared: Floats) -> Floats:
+    """Return U of pairs in contact, from d²."""
+    return _potential(squared, CONTACT_SQUARED, CONTACT_SQUARED)
+
+
+def _potential(squared: Floats, rest_squared: Floats | float, divisor: Floats | float) -> Floats:
+    """Return U = ½ (d² − r² − r² ln(d²/r²)); where r is zero the divisor is one, and the logarithm's term vanishes."""
     energy: Floats = 0.5 * (squared - rest_squared - rest_squared * np.log(squared / divisor))
     return energy
