@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Iterable
+from itertools import chain
 from typing import TypeVar, assert_never
 
 import numpy as np
@@ -101,6 +102,7 @@ class _Compiler:
             velocity = np.concatenate([velocity for _, velocity in placed])
             self._position = _jittered(self._placed, scene.jitter)
             self._require_finite(layouts, velocity)
+        self._require_room_for_pairs()
         bonds = [self._bond_table(name, entry) for name, entry in scene.bonds.items()]
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
         forces = [self._force(name, entry) for name, entry in scene.forces.items()]
@@ -135,7 +137,6 @@ class _Compiler:
         """Expand a rule to pairs with their desired distances."""
         path = ("bonds", name)
         try:
-            self._require_pair_room(path, bonds)
             first, second = expand(bonds, self._selections, self._placed)
         except RuleError as error:
             self._complain((*path, *_parts(error.key)), str(error))
@@ -144,7 +145,7 @@ class _Compiler:
             self._complain(path, str(error))
             return None
         except MemoryError as error:
-            self._complain(path, f"this binds too much: {error}, and the memory is full")
+            self._complain(path, f"binds too much: {error}")
             return None
         if self._found_coincident(path, first, second, "bound"):
             return None
@@ -175,9 +176,15 @@ class _Compiler:
             left, right = collisions.between
             yield Between(_read_only(atoms(left)), _read_only(atoms(right)))
         else:
-            sides = [_read_only(atoms(side)) for side in collisions.among or ()]
-            for number, left_atoms in enumerate(sides):
-                yield from (Between(left_atoms, right_atoms) for right_atoms in sides[number + 1 :])
+            yield from self._among(collisions.among or ())
+
+    def _among(self, sides: tuple[tuple[str, ...], ...]) -> Iterable[Between]:
+        """Yield few blocks with all pairs across sides: between two halves of the sides, then inside each half."""
+        if len(sides) > 1:
+            left, right = sides[: len(sides) // 2], sides[len(sides) // 2 :]
+            yield Between(*(self._selections.atoms(tuple(chain.from_iterable(half))) for half in (left, right)))
+            yield from self._among(left)
+            yield from self._among(right)
 
     def _force(self, name: str, force: Force) -> ExternalForce | None:
         """Compile one external force."""
@@ -248,19 +255,25 @@ class _Compiler:
         self._require_memory(("groups",), n_atoms * BYTES_PER_ATOM, f"{n_atoms:,} atoms")
         self._stop_if_wrong()
 
-    def _require_pair_room(self, path: Path, bonds: Bonds) -> None:
-        """Refuse a rule whose pairs can be counted beforehand and do not fit into memory, before making any."""
+    def _require_room_for_pairs(self) -> None:
+        """Refuse rules whose pairs can be counted beforehand and do not fit into memory, before making any."""
+        n_pairs = 0
+        for name, bonds in self._scene.bonds.items():
+            try:
+                n_pairs += self._n_countable_pairs(bonds)
+            except SelectionError:
+                continue  # told when the pairs are made
+            self._require_memory(("bonds", name, "rule"), n_pairs * BYTES_PER_PAIR, f"{n_pairs:,} bonds up to here")
+        self._stop_if_wrong()
+
+    def _n_countable_pairs(self, bonds: Bonds) -> int:
+        """Return how many pairs a rule makes at most, or 0 where only making them will tell."""
         sizes = [self._selections.atoms((part,)).size for part in bonds.within or ()]
         if bonds.rule == "neighbour":
-            n_pairs = sum(size * min(bonds.reach, size) for size in sizes)
-        elif bonds.rule == "all-pairs" and bonds.between is not None:
-            n_pairs = math.prod(self._selections.atoms(side).size for side in bonds.between)
-        elif bonds.rule == "all-pairs":
-            n_pairs = sum(math.comb(size, 2) for size in sizes)
-        else:
-            return
-        if n_pairs * BYTES_PER_PAIR > free_memory():
-            raise RuleError("rule", self._too_large(n_pairs * BYTES_PER_PAIR, f"{n_pairs:,} bonds"))
+            return sum(size * min(bonds.reach, size) for size in sizes)
+        if bonds.rule == "all-pairs" and bonds.between is not None:
+            return math.prod(self._selections.atoms(side).size for side in bonds.between)
+        return sum(math.comb(size, 2) for size in sizes) if bonds.rule == "all-pairs" else 0
 
     def _require_memory(self, path: Path, size: int, what: str) -> None:
         if size > free_memory():
