@@ -5,11 +5,11 @@ Run it with `make figures`.
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from pathlib import Path
 
 from pages import PAGES, ROOT, pictures, run_page
+from PIL import Image
 
 FIGURES = ROOT / "docs" / "figures"
 
@@ -21,7 +21,15 @@ def main() -> None:
             with tempfile.TemporaryDirectory() as folder:
                 run_page(page, Path(folder))
                 for name in names:
-                    shutil.copy(Path(folder) / name, FIGURES / name)
+                    keep(Path(folder) / name, FIGURES / name)
+
+
+def keep(drawn: Path, kept: Path) -> None:
+    """Save a picture in 256 colours, which makes the file a fraction as large and cannot be seen."""
+    with Image.open(drawn) as picture:
+        picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+            kept, optimize=True
+        )
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -123,9 +123,7 @@ def _section(heading: str, names: Iterable[str], docs: dict[str, dict[str, Field
         yield _fields(docs[name])
 
 
-def _family(
-    heading: str, base: str, names: Iterable[str], docs: dict[str, dict[str, FieldDoc]]
-) -> Iterator[str]:
+def _family(heading: str, base: str, names: Iterable[str], docs: dict[str, dict[str, FieldDoc]]) -> Iterator[str]:
     """Yield the keys that all members of a family share, then each member with its own keys and an example."""
     members = {name: getattr(language, name) for name in names}
     first = next(iter(members))
@@ -144,7 +142,7 @@ def _family(
 
 def _annotated(class_: type[Declaration]) -> list[str]:
     """Return the fields that a class itself declares."""
-    return list(class_.__dict__["__annotations__"])
+    return list(inspect.get_annotations(class_))
 
 
 def _word(class_: type[Declaration]) -> tuple[str, str]:
@@ -157,11 +155,16 @@ def _word(class_: type[Declaration]) -> tuple[str, str]:
 def _fields(fields: dict[str, FieldDoc]) -> str:
     """Return a table of keys."""
     rows = [
-        f"| `{key}` | {_in_code(doc.type)} | {'required' if doc.default is None else _in_code(doc.default)} "
-        f"| {doc.description} |"
+        (f"`{key}`", _in_code(doc.type), "required" if doc.default is None else _in_code(doc.default), doc.description)
         for key, doc in fields.items()
     ]
-    return "\n".join(["| key | type | default | meaning |", "| --- | --- | --- | --- |", *rows, ""])
+    return _table(("key", "type", "default", "meaning"), rows)
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table."""
+    lines = (" | ".join(cell.replace("|", "\\|") for cell in row) for row in (head, ["---"] * len(head), *rows))
+    return "".join(f"| {line} |\n" for line in lines)
 
 
 def _in_code(text: str) -> str:
@@ -209,8 +212,8 @@ def _parameters(command: Any) -> str:
     shown = [parameter for parameter in command.params if getattr(parameter, "help", None)]
     if not shown:
         return ""
-    rows = [f"| {_spelling(parameter)} | {_default(parameter)} | {_meaning(parameter)} |" for parameter in shown]
-    return "\n".join(["| argument or option | default | meaning |", "| --- | --- | --- |", *rows, ""])
+    rows = [(_spelling(parameter), _default(parameter), _meaning(parameter)) for parameter in shown]
+    return _table(("argument or option", "default", "meaning"), rows)
 
 
 def _spelling(parameter: Any) -> str:
@@ -232,8 +235,7 @@ def _default(parameter: Any) -> str:
 
 
 def _meaning(parameter: Any) -> str:
-    text: str = re.sub(r"\s*\[default: .*\]", "", parameter.help)
-    return text.replace("|", "\\|")
+    return re.sub(r"\s*\[default: .*\]", "", str(parameter.help))
 
 
 if __name__ == "__main__":
