@@ -90,19 +90,27 @@ def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> 
         position: atom centres [length], (3, n_atoms).
         cutoff: distance below which a pair is near [length].
     """
+    found = [_block_pairs_near(block, position, cutoff) for block in table.blocks]
+    if len(table.blocks) == 1 and isinstance(table.blocks[0], Within):
+        return found[0]  # sorted as it is
     n_atoms = position.shape[1]
-    keys = []
-    for block in table.blocks:
-        if isinstance(block, Between):
-            left, right = near_pairs(position[:, block.left], position[:, block.right], cutoff)
-            one, other = block.left[left], block.right[right]
-            first, second = np.minimum(one, other), np.maximum(one, other)
-            keys.append((first * n_atoms + second)[first != second])
-        else:
-            left, right = near_pairs(position[:, block.atoms], None, cutoff)
-            keys.append((block.atoms[left] * n_atoms + block.atoms[right])[right - left >= block.min_gap])
-    key = np.unique(np.concatenate(keys))
-    return key // n_atoms, key % n_atoms
+    key = np.unique(np.concatenate([first * n_atoms + second for first, second in found]))
+    first = key // n_atoms
+    return first, key - first * n_atoms
+
+
+def _block_pairs_near(block: Within | Between, position: Floats, cutoff: float) -> tuple[Indices, Indices]:
+    """Return the near pairs of a block, first < second."""
+    if isinstance(block, Between):
+        left, right = near_pairs(position[:, block.left], position[:, block.right], cutoff)
+        one, other = block.left[left], block.right[right]
+        apart = one != other
+        return np.minimum(one, other)[apart], np.maximum(one, other)[apart]
+    left, right = near_pairs(position[:, as_index(block.atoms)], None, cutoff)
+    if block.min_gap > 1:
+        apart = right - left >= block.min_gap
+        left, right = left[apart], right[apart]
+    return block.atoms[left], block.atoms[right]
 
 
 def involved_atoms(tables: Iterable[CollisionTable], n_atoms: int) -> Indices:

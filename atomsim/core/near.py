@@ -7,17 +7,18 @@ says, is below the squared cutoff. How they look for them (tiles or cells) never
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Indices
 
-TILE = 1 << 18
-"""Pair distances held at a time: two megabytes per array."""
+TILE = 1 << 15
+"""Pair distances computed at a time: what is known of them should stay in the cache of one core."""
 
-DENSE_LIMIT = 1 << 22
-"""Up to so many pairs it is cheaper to look at all of them than to sort atoms into cells."""
+DENSE_LIMIT = 128
+"""Up to so many pairs per atom it is cheaper to look at all of them than to sort atoms into cells."""
 
 Found = tuple[Indices, float]
 """Keys first · n_right + second of near pairs, and which share of all candidates has been looked at."""
@@ -51,7 +52,7 @@ def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indic
     """
     n_left = left.shape[1]
     n_right = n_left if right is None else right.shape[1]
-    search = _by_tiles if n_left * n_right <= DENSE_LIMIT else _by_cells
+    search = _by_tiles if n_left * n_right <= DENSE_LIMIT * (n_left + n_right) else _by_cells
     found: list[Indices] = []
     size = 0
     for band, share in search(left, right, cutoff):
@@ -107,34 +108,44 @@ def _by_cells(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Fou
     n_right = partner.shape[1]
     middle = np.median(partner, axis=1)
     width = _cell_width(partner, middle, cutoff)
-    key_right = _cell_key(partner, middle, width)
-    order = np.argsort(key_right, kind="stable")
-    sorted_key = key_right[order]
-    key_left = sorted_key if right is None else _cell_key(left, middle, width)
-    atom_left = order if right is None else np.arange(left.shape[1])
-    place = np.arange(atom_left.size)
+    seconds = _sorted_by_cell(partner, middle, width)
+    firsts = seconds if right is None else _sorted_by_cell(left, middle, width)
     columns = [(0, 0), (0, 1), (1, -1), (1, 0), (1, 1)] if right is None else _ALL_COLUMNS
     runs = []
     for column in columns:
         shift = (column[0] << 42) + (column[1] << 21)
-        start = np.searchsorted(sorted_key, key_left + (shift - 1), side="left")
+        start = np.searchsorted(seconds.key, firsts.key + (shift - 1), side="left")
         if right is None and column == (0, 0):
-            start = place + 1
-        runs.append((start, np.searchsorted(sorted_key, key_left + (shift + 1), side="right") - start))
+            start = np.arange(1, n_right + 1)
+        runs.append((start, np.searchsorted(seconds.key, firsts.key + (shift + 1), side="right") - start))
     n_candidates = sum(int(count.sum()) for _, count in runs)
     n_seen = 0
     for start, run in runs:
         for band in _bands(run):
             count = run[band]
-            first = np.repeat(atom_left[band], count)
-            second = order[_ragged_ranges(start[band], count)]
-            n_seen += first.size
-            near = squared_distance(left[:, first], partner[:, second]) < cutoff * cutoff
-            first, second = first[near], second[near]
+            place = _ragged_ranges(start[band], count)
+            n_seen += place.size
+            here = np.repeat(firsts.position[:, band], count, axis=1)
+            near = np.flatnonzero(squared_distance(here, np.take(seconds.position, place, axis=1)) < cutoff * cutoff)
+            first, second = np.repeat(firsts.atom[band], count)[near], seconds.atom[place[near]]
             if right is None:
                 first, second = np.minimum(first, second), np.maximum(first, second)
             if first.size:
                 yield first * n_right + second, n_seen / n_candidates
+
+
+class _Cells(NamedTuple):
+    """Atoms in order of the cells they are in."""
+
+    key: Indices
+    atom: Indices
+    position: Floats
+
+
+def _sorted_by_cell(position: Floats, middle: Floats, width: float) -> _Cells:
+    key = _cell_key(position, middle, width)
+    order = np.argsort(key, kind="stable")
+    return _Cells(key[order], order, np.take(position, order, axis=1))
 
 
 _ALL_COLUMNS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
