@@ -257,14 +257,16 @@ class _Compiler:
 
     def _require_room_for_pairs(self) -> None:
         """Refuse rules whose pairs can be counted beforehand and do not fit into memory, before making any."""
-        n_pairs = 0
+        n_before = 0
         for name, bonds in self._scene.bonds.items():
             try:
-                n_pairs += self._n_countable_pairs(bonds)
+                n_pairs = n_before + self._n_countable_pairs(bonds)
             except SelectionError:
                 continue  # told when the pairs are made
-            self._require_memory(("bonds", name, "rule"), n_pairs * BYTES_PER_PAIR, f"{n_pairs:,} bonds up to here")
-        self._stop_if_wrong()
+            what = f"{n_pairs:,} bonds" + (", with those before," if n_before else "")
+            self._require_memory(("bonds", name, "rule"), n_pairs * BYTES_PER_PAIR, what)
+            self._stop_if_wrong()
+            n_before = n_pairs
 
     def _n_countable_pairs(self, bonds: Bonds) -> int:
         """Return how many pairs a rule makes at most, or 0 where only making them will tell."""

@@ -8,9 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from atomsim.compiler.shapes import count_atoms
+from atomsim.core.memory import free_memory
 from atomsim.core.model import Indices
 from atomsim.scene.language import BlockGroup, PlaneGroup, PolygonGroup, RingGroup, Scene
 from atomsim.scene.selection import parse_selection
+
+LARGE = 1 << 26
+"""Bytes of selections from which on it is worth asking whether more will fit."""
 
 
 class SelectionError(ValueError):
@@ -53,15 +57,34 @@ class Selections:
     def __init__(self, layouts: Mapping[str, GroupLayout], n_atoms: int) -> None:
         self._layouts = layouts
         self._n_atoms = n_atoms
+        self._found: dict[tuple[str, ...], Indices] = {}
+        self._n_bytes = 0
 
     def atoms(self, selection: tuple[str, ...]) -> Indices:
-        """Return the atoms of a selection (the union of its expressions), ascending, without duplicates.
+        """Return the atoms of a selection (the union of its expressions), ascending, without duplicates, read-only.
 
         Raises:
-            SelectionError: an unknown group, an index out of range, or nothing selected.
+            SelectionError: an unknown group, an index out of range, nothing selected, or more than fits into memory.
         """
-        parts = [self._atoms_of(expression) for expression in selection]
-        return parts[0] if len(parts) == 1 else np.unique(np.concatenate(parts))
+        if selection not in self._found:
+            self._keep(selection, self._union(selection))
+        return self._found[selection]
+
+    def _keep(self, selection: tuple[str, ...], atoms: Indices) -> None:
+        """Remember a selection: a thousand forces on all atoms share one array."""
+        self._n_bytes += atoms.nbytes
+        if self._n_bytes > LARGE and self._n_bytes > free_memory():
+            raise SelectionError("the selections up to here name more atoms than fit into memory")
+        atoms.setflags(write=False)
+        self._found[selection] = atoms
+
+    def _union(self, selection: tuple[str, ...]) -> Indices:
+        if len(selection) == 1:
+            return self._atoms_of(selection[0])
+        is_selected = np.zeros(self._n_atoms, dtype=bool)
+        for expression in selection:
+            is_selected[self._atoms_of(expression)] = True
+        return np.flatnonzero(is_selected)
 
     def whole_group(self, expression: str) -> GroupLayout | None:
         """Return the layout of the group that an expression names as a whole, else None."""

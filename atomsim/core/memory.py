@@ -27,4 +27,4 @@ def readable_bytes(size: float) -> str:
         if size < 1000:
             return f"{size:.0f} {unit}" if unit == "B" or size >= 100 else f"{size:.1f} {unit}"
         size /= 1000
-    return f"{size:.0f} PB"
+    return f"{size:.0f} PB" if size < 1e6 else f"{size:.0e} PB"

@@ -13,6 +13,7 @@ from support.running import atoms_at, compiled, scene_of
 from atomsim.compiler import compile as compiler
 from atomsim.compiler import compile_scene
 from atomsim.core import near
+from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
 from atomsim.errors import SceneError
 from atomsim.scene.loader import loads
@@ -209,7 +210,7 @@ def test_a_threshold_that_binds_too_much(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(near, "free_memory", lambda: 1 << 24)
     groups = {"a": {"shape": "string", "count": 5000, "step": [1, 0, 0]}}
     bonds = {"b": {"within": "a", "rule": "distance-threshold", "threshold": 10**4}}
-    message = "bonds.b: this binds too much: about 1.2e+07 pairs are near each other, too many for memory"
+    message = "bonds.b: binds too much: about 1.2e+07 pairs are near each other, too many for memory"
     assert mistakes(groups, bonds=bonds) == [message]
 
 
@@ -275,7 +276,31 @@ def test_among_is_every_two_groups() -> None:
     groups = {name: atoms_at((place, 0, 0)) for place, name in enumerate("abc")}
     model, _ = compiled(groups, collisions={"c": {"among": ["a", "b", "c"]}})
     blocks = [block for block in model.collisions[0].blocks if isinstance(block, Between)]
-    assert [(block.left.tolist(), block.right.tolist()) for block in blocks] == [([0], [1]), ([0], [2]), ([1], [2])]
+    assert [(block.left.tolist(), block.right.tolist()) for block in blocks] == [([0], [1, 2]), ([1], [2])]
+
+
+def test_among_many_groups_needs_few_blocks() -> None:
+    names = [f"g{number}" for number in range(300)]
+    groups = {name: atoms_at((3 * place, 0, 0)) for place, name in enumerate(names)}
+    model, _ = compiled(groups, collisions={"c": {"among": names}})
+    assert len(model.collisions[0].blocks) == 299
+    assert n_collision_pairs(model.collisions[0]) == 300 * 299 // 2
+
+
+def test_a_selection_used_often_is_kept_once() -> None:
+    model, _ = compiled(
+        {"a": atoms_at((0, 0, 0), (3, 0, 0))},
+        forces={f"f{number}": {"kind": "damping", "coefficient": 0.1} for number in range(9)},
+    )
+    assert len({id(force.atoms) for force in model.forces}) == 1
+
+
+def test_bonds_are_counted_together_before_any_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "free_memory", lambda: 10**6)
+    groups = {"a": {"shape": "string", "count": 100, "step": [3, 0, 0]}}
+    bonds = {name: {"within": "a", "rule": "all-pairs"} for name in "bcdef"}
+    message = "bonds.d.rule: 14,850 bonds, with those before, need about 1.5 MB of memory, and 1.0 MB are free"
+    assert mistakes(groups, bonds=bonds) == [message]
 
 
 def test_forces_keep_their_order_and_numbers() -> None:
