@@ -6,13 +6,13 @@ never in a request for more memory than there is.
 
 from __future__ import annotations
 
-import os
 import re
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from atomsim.core.memory import free_memory
 from atomsim.errors import AtomsimError, InputError
 
 
@@ -78,16 +78,5 @@ def check_room(n_bytes: int) -> None:
     Raises:
         MemoryError: it does not fit.
     """
-    if n_bytes > _free_memory():
+    if n_bytes > free_memory():
         raise MemoryError
-
-
-def _free_memory() -> int:
-    """Return the memory that can be had without swapping [bytes]; all of it where the system does not tell."""
-    try:
-        for line in Path("/proc/meminfo").read_text().splitlines():
-            if line.startswith("MemAvailable:"):
-                return int(line.split()[1]) * 1024
-    except OSError:
-        pass
-    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")

@@ -256,14 +256,14 @@ def test_a_dataset_larger_than_the_file_is_not_read(tmp_path: Path) -> None:
 
 def test_more_than_the_free_memory_is_not_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = record(tmp_path / "out.h5", header(40))
-    monkeypatch.setattr(guard, "_free_memory", lambda: 100)
+    monkeypatch.setattr(guard, "free_memory", lambda: 100)
     with pytest.raises(InputError) as caught:
         Trajectory(path)
     assert str(caught.value) == f"{path}: needs more memory than there is"
 
 
 def test_free_memory_is_a_sensible_number() -> None:
-    assert 1 << 20 < guard._free_memory() < 1 << 50
+    assert 1 << 20 < guard.free_memory() < 1 << 50
 
 
 # --- Journals made to do damage: their checksums are right ---
