@@ -74,7 +74,8 @@ def test_page_that_is_right_shares_folder_and_names(tmp_path: Path, monkeypatch:
     page = tmp_path / "page.md"
     page.write_text(
         "```console\n$ echo hello > a.txt\n$ (exit 3)\n$ echo $?\n3\n$ cat a.txt\nh…o\n```\n"
-        "```python\ntext = open(\"a.txt\").read()\n```\n```python\n>>> text\n'hello\\n'\n```\n",
+        "```python\nfrom pathlib import Path\n\ntext = Path('a.txt').read_text()\n```\n"
+        "```python\n>>> text\n'hello\\n'\n```\n",
         encoding="utf-8",
     )
     run_page(page, tmp_path / "run")
