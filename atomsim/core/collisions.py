@@ -67,13 +67,13 @@ def squared_reach(skin: float) -> float:
     return 0.25 * 0.999999 * skin * skin
 
 
-def better_skin(skin: float, n_rounds: int, n_atoms: int, n_near: int) -> float:
+def better_skin(skin: float, n_rounds: int, n_atoms: float, n_near: int) -> float:
     """Return how far the next list should look, so that making lists costs one to four times as much as using them.
 
     Args:
         skin: how much further than contact the last list looked [length].
         n_rounds: rounds that it was valid for.
-        n_atoms: atoms whose partners it listed.
+        n_atoms: atoms whose partners it listed; those whose partners are found more easily may count less.
         n_near: partners it listed, over all these atoms.
     """
     making, using = MAKING_COST * n_atoms, n_near * n_rounds

@@ -76,13 +76,15 @@ class Queries(NamedTuple):
         table_first_query: (n_tables + 1,).
         slot: the atom that asks; increasing within a table.
         grid: the grid of the atoms it may collide with.
-        tag: see `Grids.tag`.
+        tag: see `Grids.target_tag`.
+        cost: what all of them take, as a number of queries that look into buckets, (1,).
     """
 
     table_first_query: Indices
     slot: Indices
     grid: Indices
     tag: Indices
+    cost: Floats
 
 
 class Grids(NamedTuple):
@@ -161,14 +163,18 @@ class Forces(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """Tells when lists of near pairs end to be valid.
+    """Tells when the lists of near pairs end to be valid.
 
     Attributes:
-        made_at: positions when the lists were made [length], (3, n_slots).
         run_start: runs of consecutive slots of one share that may collide at all.
         run_stop: one past the end of each run.
+        made_at: positions when the lists were made [length], (3, n_slots).
+        skin: how much further than contact they look [length], (1,).
+        n_rounds: rounds since then, (1,).
     """
 
-    made_at: Floats
     run_start: Indices
     run_stop: Indices
+    made_at: Floats
+    skin: Floats
+    n_rounds: Indices

@@ -1,13 +1,17 @@
-"""Iteration rounds of a share of atoms, compiled (paper section 2.2); knows no threads, nor how lists are made."""
+"""Iteration rounds of a share of atoms, compiled (paper section 2.2); knows no threads."""
 
 from __future__ import annotations
 
+from atomsim.core import collisions
 from atomsim.core.collisions import CONTACT_SQUARED
 from atomsim.core.model import Floats
 from atomsim.core.numba_backend.bond_kernels import add_rows, add_tiles
 from atomsim.core.numba_backend.force_kernels import add_forces
 from atomsim.core.numba_backend.jit import inner, kernel
-from atomsim.core.numba_backend.records import Bonds, Forces, Motion, NearPairs, Watch
+from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
+from atomsim.core.numba_backend.records import Bonds, Forces, Grids, Motion, NearPairs, Queries, Watch
+
+better_skin, squared_reach = inner(collisions.better_skin), inner(collisions.squared_reach)
 
 
 @kernel
@@ -17,14 +21,18 @@ def advance_rounds(
     time_step: float,
     motion: Motion,
     bonds: Bonds,
-    near: NearPairs,
     forces: Forces,
     pushes: Floats,
+    near: NearPairs,
     watch: Watch,
-    limit: float,
+    queries: Queries,
+    grids: Grids,
+    is_alone: bool,
     workspace: Floats,
 ) -> tuple[int, bool]:
     """Advance the slots start ≤ slot < stop by as many rounds as `pushes` has, or until the near pairs are stale.
+
+    A share that is alone renews its list of near pairs itself, as long as the list has room.
 
     j(n) = Σ forces;  v(n+1) = v(n) + j(n);  c(n+1) = c(n) + τ · v(n+1).
 
@@ -34,11 +42,13 @@ def advance_rounds(
         time_step: τ [time].
         motion: the state of all atoms.
         bonds: the bonds of the share.
-        near: the near collision pairs of the share.
         forces: forces from outside.
         pushes: what they add uniformly, per round ahead, (n_rounds, n_forces, 3).
-        watch: the positions for which `near` was made.
-        limit: squared way from which on an atom makes `near` stale [length²].
+        near: the near collision pairs of the share.
+        watch: when and where they were found.
+        queries: how to find them.
+        grids: where to find them.
+        is_alone: whether the share is all atoms.
         workspace: scratch, (2, 3, LANES).
 
     Returns:
@@ -64,7 +74,9 @@ def advance_rounds(
                 impulse[component, start:stop],
             )
         here, there = there, here
-        if _is_stale(watch, limit, here):
+        if is_alone:
+            watch.n_rounds[0] += 1
+        if _is_stale(watch, here) and not (is_alone and _renew(here, watch, queries, grids, near)):
             return number + 1, True
     return pushes.shape[0], False
 
@@ -99,9 +111,9 @@ def _move(time_step: float, here: Floats, there: Floats, velocity: Floats, impul
 
 
 @inner
-def _is_stale(watch: Watch, limit: float, position: Floats) -> bool:
+def _is_stale(watch: Watch, position: Floats) -> bool:
     """Return whether any atom has moved as far as the lists of near pairs allow, or has no place any more."""
-    n_far = 0
+    limit, n_far = squared_reach(watch.skin[0]), 0
     for run in range(watch.run_start.size):
         start, stop = watch.run_start[run], watch.run_stop[run]
         x, y, z = position[0, start:stop], position[1, start:stop], position[2, start:stop]
@@ -112,3 +124,17 @@ def _is_stale(watch: Watch, limit: float, position: Floats) -> bool:
             dx, dy, dz = x[number] - old_x[number], y[number] - old_y[number], z[number] - old_z[number]
             n_far += not (dx * dx + dy * dy) + dz * dz < limit
     return n_far > 0
+
+
+@inner
+def _renew(position: Floats, watch: Watch, queries: Queries, grids: Grids, near: NearPairs) -> bool:
+    """Make the list of near pairs of all atoms anew; return whether it had room for them."""
+    n_near = near.row_first_entry[near.table_first_row[-1]]
+    watch.skin[0] = better_skin(watch.skin[0], watch.n_rounds[0], queries.cost[0], n_near)
+    watch.n_rounds[0] = 0
+    for component in range(3):
+        for slot in range(position.shape[1]):
+            watch.made_at[component, slot] = position[component, slot]
+    cutoff = 2.0 + watch.skin[0]
+    sort_into_buckets(position, cutoff, grids)
+    return find_near(position, cutoff, queries, grids, near)

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from atomsim.core.collisions import SKIN, better_skin, involved_atoms, squared_reach
+from atomsim.core.collisions import SKIN, better_skin, involved_atoms
 from atomsim.core.forces import held_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Model, State
@@ -23,14 +23,15 @@ from atomsim.core.numba_backend.round_kernels import advance_rounds
 CALL_ATOM_ROUNDS = 1 << 21
 """Atoms times rounds computed in one call of a kernel, which nothing can interrupt: some tenths of a second."""
 
+_NONE = np.empty(0, dtype=np.int64)
+
 Result = TypeVar("Result")
 
 
 class NumbaStepper:
     """Advances one state of a model to the same bits as `NumpyStepper`.
 
-    The atoms are shared out to threads, which meet after every round. One thread alone runs on until the lists of near
-    pairs are stale.
+    The atoms are shared out to threads, which meet after every round. One thread alone runs through many rounds.
 
     Args:
         model: what stays constant.
@@ -49,14 +50,12 @@ class NumbaStepper:
         forces = in_order(model.forces)
         self._forces = plan_forces(forces, self._margin)
         self._pushes = Pushes(forces)
-        self._skin = skin
-        self._made_at = np.empty_like(here)
-        self._made_round: int | None = None
+        self._watch = Watch(_NONE, _NONE, np.zeros_like(here), np.array([skin]), np.zeros(1, dtype=np.int64))
         self._is_stale = bool(model.collisions)
         self._grids = plan_grids(model.collisions, self._margin)
         edges = [model.n_atoms * number // threads for number in range(threads + 1)]
         self._shares = [
-            _Share(model, range(start, stop), self._margin, self._made_at)
+            _Share(model, range(start, stop), self._margin, self._watch)
             for start, stop in pairwise(edges)
             if start < stop
         ]
@@ -84,28 +83,30 @@ class NumbaStepper:
 
     def _find_near_pairs(self) -> None:
         """Make all lists of near pairs anew, looking as far as the last ones make seem best."""
-        if self._made_round is not None:
+        skin, n_rounds = self._watch.skin, self._watch.n_rounds
+        if n_rounds[0]:
             n_near = sum(share.n_near for share in self._shares)
-            n_asking = sum(share.n_asking for share in self._shares)
-            self._skin = better_skin(self._skin, self._round_index - self._made_round, n_asking, n_near)
-        self._made_round = self._round_index
-        position, cutoff = self._motion.here, 2.0 + self._skin
-        np.copyto(self._made_at, position)
+            skin[0] = better_skin(skin[0], n_rounds[0], sum(share.search_cost for share in self._shares), n_near)
+            n_rounds[0] = 0
+        position, cutoff = self._motion.here, 2.0 + float(skin[0])
+        np.copyto(self._watch.made_at, position)
         sort_into_buckets(position, cutoff, self._grids)
         self._for_each_share(lambda share: share.find_near_pairs(position, cutoff, self._grids))
 
     def _advance_at_most(self, n_rounds: int) -> None:
-        """Advance by some rounds, fewer if the near pairs become stale."""
-        n_rounds = 1 if self._pool else min(n_rounds, max(1, CALL_ATOM_ROUNDS // self._n_atoms))
+        """Advance by some rounds; several threads meet after each of them."""
+        is_alone = self._pool is None
+        n_rounds = min(n_rounds, max(1, CALL_ATOM_ROUNDS // self._n_atoms)) if is_alone else 1
         pushes = self._pushes.ahead(self._round_index, n_rounds)
-        limit = squared_reach(self._skin)
         done = self._for_each_share(
-            lambda share: share.advance(self._time_step, self._motion, self._forces, pushes, limit)
+            lambda share: share.advance(self._time_step, self._motion, self._forces, pushes, self._grids, is_alone)
         )
         self._is_stale = any(is_stale for _, is_stale in done)
         n_done = done[0][0]
         if n_done % 2:
             self._motion = self._motion._replace(here=self._motion.there, there=self._motion.here)
+        if not is_alone:
+            self._watch.n_rounds[0] += n_done
         self._round_index += n_done
 
     def _for_each_share(self, work: Callable[[_Share], Result]) -> list[Result]:
@@ -120,7 +121,7 @@ class NumbaStepper:
 class _Share:
     """The atoms that one thread computes: whatever is written for them is written by it alone."""
 
-    def __init__(self, model: Model, atoms: range, margin: int, made_at: Floats) -> None:
+    def __init__(self, model: Model, atoms: range, margin: int, watch: Watch) -> None:
         held = held_atoms(model.forces)
         self._start, self._stop = atoms.start + margin, atoms.stop + margin
         self._bonds = plan_bonds(model.bonds, atoms, held, margin)
@@ -128,13 +129,14 @@ class _Share:
         self._near = empty_list(self._queries, 16 * self._queries.slot.size)
         involved = involved_atoms(model.collisions, model.n_atoms)
         involved = involved[(involved >= atoms.start) & (involved < atoms.stop)]
-        self._watch = Watch(made_at, *runs_of(involved, margin))
+        run_start, run_stop = runs_of(involved, margin)
+        self._watch = watch._replace(run_start=run_start, run_stop=run_stop)
         self._workspace = np.zeros((2, 3, LANES))
 
     @property
-    def n_asking(self) -> int:
-        """How many times an atom looks for near partners."""
-        return self._queries.slot.size
+    def search_cost(self) -> float:
+        """What making the list takes, as a number of atoms that look into buckets."""
+        return float(self._queries.cost[0])
 
     @property
     def n_near(self) -> int:
@@ -154,7 +156,7 @@ class _Share:
             self._near = empty_list(self._queries, n_entries)
 
     def advance(
-        self, time_step: float, motion: Motion, forces: Forces, pushes: Floats, limit: float
+        self, time_step: float, motion: Motion, forces: Forces, pushes: Floats, grids: Grids, is_alone: bool
     ) -> tuple[int, bool]:
         """Advance by one or more rounds; see `advance_rounds`."""
         return advance_rounds(
@@ -163,10 +165,12 @@ class _Share:
             time_step,
             motion,
             self._bonds,
-            self._near,
             forces,
             pushes,
+            self._near,
             self._watch,
-            limit,
+            self._queries,
+            grids,
+            is_alone,
             self._workspace,
         )
