@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import random
 from collections.abc import Iterable
 from itertools import chain
@@ -13,10 +12,10 @@ import numpy as np
 from atomsim.compiler.coincident import coincident_pairs
 from atomsim.compiler.colors import PALETTE, hex_color
 from atomsim.compiler.pairs import RuleError, expand
+from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out
 from atomsim.compiler.shapes import count_atoms, place, unit
 from atomsim.core.collisions import n_collision_pairs
-from atomsim.core.memory import free_memory, readable_bytes
 from atomsim.core.model import (
     Between,
     BondTable,
@@ -55,11 +54,10 @@ from atomsim.scene.language import (
 )
 from atomsim.scene.source import Path, Source
 
-BYTES_PER_ATOM = 600
-"""What an atom costs while a scene compiles and runs, beside its pairs."""
+LARGEST = 1e150
+"""The largest coordinate, velocity or desired distance: squares of differences stay finite."""
 
-BYTES_PER_PAIR = 100
-"""What a bound pair costs while a scene compiles."""
+TOO_LARGE = "too large to compute with"
 
 Array = TypeVar("Array", Floats, Indices)
 
@@ -150,7 +148,7 @@ class _Compiler:
         if self._found_coincident(path, first, second, "bound"):
             return None
         initial = squared_distance(self._placed[first].T, self._placed[second].T)
-        rest_squared = _rest_squared(bonds.rest, initial)
+        rest_squared = self._rest_squared(path, bonds.rest, initial)
         return BondTable(self._origin(*path), _read_only(first), _read_only(second), _read_only(rest_squared))
 
     def _collision_table(self, name: str, collisions: Collisions) -> CollisionTable | None:
@@ -223,9 +221,22 @@ class _Compiler:
             except SelectionError as error:
                 self._complain(("render", "colors", selection), str(error))
 
-    def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> TetherForce:
+    def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> TetherForce | None:
+        path = ("forces", origin.name)
+        if max(map(abs, force.target)) > LARGEST:
+            self._complain((*path, "target"), f"its numbers are {TOO_LARGE}")
+            return None
         initial = squared_distance(self._placed[atoms].T, np.array(force.target)[:, None])
-        return TetherForce(origin, atoms, force.target, _read_only(_rest_squared(force.rest, initial)))
+        rest_squared = self._rest_squared(path, force.rest, initial)
+        return TetherForce(origin, atoms, force.target, _read_only(rest_squared))
+
+    def _rest_squared(self, path: Path, rest: Rest, initial: Floats) -> Floats:
+        """Return r² per pair: the squared initial distance, without the detour through the root, or a number's."""
+        if rest == "initial":
+            return initial
+        if rest > LARGEST:
+            self._complain((*path, "rest"), f"is {TOO_LARGE}")
+        return np.full(initial.shape, rest * rest)
 
     def _found_coincident(self, path: Path, first: Indices, second: Indices, what: str) -> bool:
         """Complain of a pair at distance zero, which has no direction to push in; before or after jitter."""
@@ -252,7 +263,7 @@ class _Compiler:
 
     def _require_room(self, n_atoms: int) -> None:
         """Refuse more atoms than fit into memory, before making any."""
-        self._require_memory(("groups",), n_atoms * BYTES_PER_ATOM, f"{n_atoms:,} atoms")
+        self._complain_if(("groups",), shortage(n_atoms * BYTES_PER_ATOM, f"{n_atoms:,} atoms"))
         self._stop_if_wrong()
 
     def _require_room_for_pairs(self) -> None:
@@ -260,37 +271,20 @@ class _Compiler:
         n_before = 0
         for name, bonds in self._scene.bonds.items():
             try:
-                n_pairs = n_before + self._n_countable_pairs(bonds)
+                n_pairs = n_before + n_countable_pairs(bonds, self._selections)
             except SelectionError:
                 continue  # told when the pairs are made
             what = f"{n_pairs:,} bonds" + (", with those before," if n_before else "")
-            self._require_memory(("bonds", name, "rule"), n_pairs * BYTES_PER_PAIR, what)
+            self._complain_if(("bonds", name, "rule"), shortage(n_pairs * BYTES_PER_PAIR, what))
             self._stop_if_wrong()
             n_before = n_pairs
 
-    def _n_countable_pairs(self, bonds: Bonds) -> int:
-        """Return how many pairs a rule makes at most, or 0 where only making them will tell."""
-        sizes = [self._selections.atoms((part,)).size for part in bonds.within or ()]
-        if bonds.rule == "neighbour":
-            return sum(size * min(bonds.reach, size) for size in sizes)
-        if bonds.rule == "all-pairs" and bonds.between is not None:
-            return math.prod(self._selections.atoms(side).size for side in bonds.between)
-        return sum(math.comb(size, 2) for size in sizes) if bonds.rule == "all-pairs" else 0
-
-    def _require_memory(self, path: Path, size: int, what: str) -> None:
-        if size > free_memory():
-            self._complain(path, self._too_large(size, what))
-
-    def _too_large(self, size: int, what: str) -> str:
-        return f"{what} need about {readable_bytes(size)} of memory, and {readable_bytes(free_memory())} are free"
-
     def _require_finite(self, layouts: dict[str, GroupLayout], velocity: Floats) -> None:
-        """Refuse numbers that are finite one by one but not where they put the atoms."""
+        """Refuse numbers that are finite one by one, but not where they put the atoms or not when they are squared."""
         for name, layout in layouts.items():
             atoms = slice(layout.start, layout.stop)
-            squared = squared_distance(self._position[atoms].T, velocity[atoms].T)
-            if not np.isfinite(squared).all():
-                self._complain(("groups", name), "its numbers are too large to compute with")
+            if not all((np.abs(numbers[atoms]) <= LARGEST).all() for numbers in (self._position, velocity)):
+                self._complain(("groups", name), f"its numbers are {TOO_LARGE}")
         self._stop_if_wrong()
 
     def _origin(self, section: str, name: str) -> Origin:
@@ -299,6 +293,10 @@ class _Compiler:
 
     def _complain(self, path: Path, message: str) -> None:
         self._problems.append(self._source.problem(path, message))
+
+    def _complain_if(self, path: Path, message: str | None) -> None:
+        if message is not None:
+            self._complain(path, message)
 
     def _stop_if_wrong(self) -> None:
         if self._problems:
@@ -317,11 +315,6 @@ def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
     uniform = random.Random(jitter.seed).random  # its stream is guaranteed to stay the same
     noise = np.array([2.0 * uniform() - 1.0 for _ in range(position.size)])
     return position + jitter.amplitude * noise.reshape(position.shape)
-
-
-def _rest_squared(rest: Rest, initial: Floats) -> Floats:
-    """Return r² per pair: the squared initial distance itself, without the detour through the root, or a number's."""
-    return initial if rest == "initial" else np.full(initial.shape, rest * rest)
 
 
 def _parts(key: str) -> Path:

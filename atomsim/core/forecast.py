@@ -20,7 +20,8 @@ def forecast(model: Model, state: State) -> list[str]:
         model: the compiled scene.
         state: where the run begins.
     """
-    return [*_instability(model, state), *_tunnelling(model, state), *_overlaps(model, state)]
+    with np.errstate(all="ignore"):  # infinite is a fair answer to absurd numbers
+        return [*_instability(model, state), *_tunnelling(model, state), *_overlaps(model, state)]
 
 
 def _instability(model: Model, state: State) -> list[str]:
@@ -32,7 +33,7 @@ def _instability(model: Model, state: State) -> list[str]:
         return []
     return [
         f"time_step {model.time_step:g} is at or above {limit:.3g}, the largest that the stiffness of this scene "
-        f"allows; expect it to blow up, and try time_step {_rounded_down(0.5 * limit):g}"
+        f"allows; expect it to blow up{_advice(0.5 * limit)}"
     ]
 
 
@@ -47,8 +48,7 @@ def _tunnelling(model: Model, state: State) -> list[str]:
         if reach >= 2.0:
             warnings.append(
                 f"{table.origin}: atoms of {model.group_of(fastest).name} move {reach / 2.0:.3g} per round, so two of "
-                f"them may pass through each other (contact is at distance 2); "
-                f"try time_step {_rounded_down(model.time_step / reach):g}"
+                f"them may pass through each other (contact is at distance 2){_advice(model.time_step / reach)}"
             )
     return warnings
 
@@ -77,7 +77,9 @@ def _atoms_of(table: CollisionTable) -> Indices:
     return np.unique(np.concatenate([atoms for side in sides for atoms in side]))
 
 
-def _rounded_down(value: float) -> float:
-    """Return a number of one digit, not above the value: what a person would try."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return math.floor(value / power) * power
+def _advice(limit: float) -> str:
+    """Advise a time step of one digit, not above the limit: what a person would try; none for an absurd limit."""
+    if not 1e-300 < limit < math.inf:
+        return ""
+    power = 10.0 ** math.floor(math.log10(limit))
+    return f"; try time_step {math.floor(limit / power) * power:g}"

@@ -99,7 +99,7 @@ def test_a_blow_up_is_explained_and_keeps_the_frames_before(cli):
     assert result.out == ""
     assert result.err == (
         "warning: time_step 0.1 is at or above 0.0286, the largest that the stiffness of this scene allows; "
-        "expect it to blow up, and try time_step 0.01\n"
+        "expect it to blow up; try time_step 0.01\n"
         "the simulation blew up in round 22: left[67] (atom 67) flew off\n"
         "  pushed hardest by bonds.left (scenes/rods.yaml:23), against left[64] (atom 64), "
         "with an impulse of 8.6e+05 in one round\n"

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from support.running import atoms_at, compiled, scene_of
 
-from atomsim.compiler import compile as compiler
-from atomsim.compiler import compile_scene
+from atomsim.compiler import compile_scene, room
+from atomsim.compiler.colors import PALETTE
 from atomsim.core import near
 from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
@@ -184,7 +184,7 @@ def test_a_crowd_at_one_place_is_told_at_once() -> None:
     ],
 )
 def test_absurd_numbers_of_atoms(groups: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler, "free_memory", lambda: 8 * 10**9)
+    monkeypatch.setattr(room, "free_memory", lambda: 8 * 10**9)
     assert mistakes(groups) == [message]
 
 
@@ -201,7 +201,7 @@ MILLION = {"a": {"shape": "string", "count": 10**6, "step": [3, 0, 0]}}
     ],
 )
 def test_absurd_numbers_of_bonds(bonds: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler, "free_memory", lambda: 8 * 10**9)
+    monkeypatch.setattr(room, "free_memory", lambda: 8 * 10**9)
     assert mistakes(MILLION, bonds={"b": bonds}) == [f"bonds.b.rule: {message} of memory, and 8.0 GB are free"]
 
 
@@ -223,7 +223,7 @@ def test_a_million_colliding_atoms_compile_without_their_pairs() -> None:
     (block,) = model.collisions[0].blocks
     assert isinstance(block, Within)
     assert block.atoms.size == 10**6
-    assert peak < compiler.BYTES_PER_ATOM * 10**6
+    assert peak < room.BYTES_PER_ATOM * 10**6
 
 
 @pytest.mark.parametrize(
@@ -268,7 +268,7 @@ def test_colors_come_from_the_picture_then_the_group_then_the_palette() -> None:
         {"a": atoms_at((0, 0, 0), color="SteelBlue"), "b": atoms_at((0, 0, 0), color="#F0a"), "c": atoms_at((0, 0, 0))},
         render={"colors": {"a": "red"}},
     )
-    assert [group.color for group in model.groups] == ["#ff0000", "#ff00aa", compiler.PALETTE[2]]
+    assert [group.color for group in model.groups] == ["#ff0000", "#ff00aa", PALETTE[2]]
     assert [model.group_of(atom).name for atom in range(3)] == ["a", "b", "c"]
 
 
@@ -296,7 +296,7 @@ def test_a_selection_used_often_is_kept_once() -> None:
 
 
 def test_bonds_are_counted_together_before_any_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler, "free_memory", lambda: 10**6)
+    monkeypatch.setattr(room, "free_memory", lambda: 10**6)
     groups = {"a": {"shape": "string", "count": 100, "step": [3, 0, 0]}}
     bonds = {name: {"within": "a", "rule": "all-pairs"} for name in "bcdef"}
     message = "bonds.d.rule: 14,850 bonds, with those before, need about 1.5 MB of memory, and 1.0 MB are free"

@@ -1,0 +1,125 @@
+"""What the report of a blow-up says, line by line, and that looking for one costs next to nothing."""
+
+from __future__ import annotations
+
+import re
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+from support.running import atoms_at, compiled, paper_scene
+
+from atomsim.compiler import compile_scene
+from atomsim.core.blowup import FLOWN_APART, explain, is_sound
+from atomsim.core.model import Model, State
+from atomsim.core.simulate import simulate
+from atomsim.core.stepper import NumpyStepper
+from atomsim.errors import BlowUpError
+
+PAIR = {"calm": atoms_at((0, 0, 9)), "pair": atoms_at((0, 0, 0), (1.5, 0, 0))}
+
+
+def report_of(groups: dict[str, Any], time_step: float, **sections: Any) -> str:
+    """Run a scene that blows up; return what is said of it."""
+    model, state = compiled(groups, time_step, **sections)
+    with pytest.raises(BlowUpError) as caught:
+        list(simulate(model, state, 5000, 1000))
+    return str(caught.value)
+
+
+def test_a_bond_that_is_too_stiff_for_the_time_step() -> None:
+    groups = {"calm": atoms_at((0, 0, 9)), "rod": {"shape": "string", "count": 20, "step": [1.5, 0, 0]}}
+    text = report_of(
+        groups, 0.5, bonds={"b": {"within": "rod", "rule": "all-pairs"}}, jitter={"amplitude": 1e-3, "seed": 1}
+    )
+    first, pushed, stiff, remedy = text.splitlines()
+    assert re.fullmatch(r"the simulation blew up in round \d+: rod\[\d+\] \(atom \d+\) flew off", first)
+    assert re.fullmatch(
+        r"  pushed hardest by bonds\.b \(<scene>:1\), against rod\[\d+\] \(atom \d+\), "
+        r"with an impulse of \S+ in one round",
+        pushed,
+    )
+    assert re.fullmatch(r"  time_step is 0\.5; the stiffness of the scene allows less than 0\.\d+", stiff)
+    assert remedy == "  remedy: a smaller time_step, fewer bonds per atom, or damping"
+
+
+def test_a_force_that_is_too_strong() -> None:
+    force = {"kind": "gravity", "acts_on": "calm", "impulse": [0, 0, -1e9]}
+    assert report_of(PAIR, 0.1, forces={"wind": {"kind": "damping", "coefficient": 0.1}, "storm": force}) == (
+        "the simulation blew up in round 1: calm[0] (atom 0) flew off\n"
+        "  pushed hardest by forces.storm (<scene>:1), with an impulse of 1e+09 in one round\n"
+        "  time_step 0.1 is below inf, the limit of the stiffness: look at speeds\n"
+        "  remedy: weaker external forces, lower velocities, or a smaller time_step"
+    )
+
+
+def test_a_collision_out_of_nearly_nothing() -> None:
+    groups = {"a": atoms_at((0, 0, 0), (1e-9, 0, 0))}
+    assert report_of(groups, 0.1, collisions={"c": {"within": "a"}}) == (
+        "the simulation blew up in round 1: a[0] (atom 0) flew off\n"
+        "  pushed hardest by collisions.c (<scene>:1), against a[1] (atom 1), with an impulse of 4e+09 in one round\n"
+        "  time_step is 0.1; the stiffness of the scene allows less than 5e-19\n"
+        "  remedy: a smaller time_step, fewer bonds per atom, or damping"
+    )
+
+
+def test_an_atom_that_nothing_pushes() -> None:
+    text = report_of({"a": atoms_at((0, 0, 0), velocity=[1e9, 0, 0])}, 1.0)
+    assert text.splitlines()[:2] == [
+        "the simulation blew up in round 1: a[0] (atom 0) flew off",
+        "  time_step 1 is below inf, the limit of the stiffness: look at speeds",
+    ]
+
+
+def state_with(number: float, what: str) -> tuple[Model, State]:
+    model, state = compiled(PAIR, 0.5)
+    position, velocity = state.position.copy(), state.velocity.copy()
+    {"position": position, "velocity": velocity}[what][1, 2] = number
+    return model, State(7, position, velocity)
+
+
+@pytest.mark.parametrize("what", ["position", "velocity"])
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
+def test_numbers_that_are_not_finite_are_not_sound(what: str, number: float) -> None:
+    model, state = state_with(number, what)
+    assert not is_sound(model, state)
+    assert "pair[0] (atom 1) flew off" in explain(model, state, state_with(0.0, what)[1], state)
+
+
+def test_an_atom_has_flown_off_when_it_moves_too_far_in_a_round() -> None:
+    assert is_sound(*state_with(2 * FLOWN_APART, "velocity"))
+    assert not is_sound(*state_with(2.1 * FLOWN_APART, "velocity"))
+    assert is_sound(*state_with(1e100, "position"))
+
+
+def test_a_resumed_run_tells_the_same_story() -> None:
+    """The limit in the report is that of the scene's first state, whichever round the run went on from."""
+    chain = {"a": {"shape": "string", "count": 3, "step": [1.1, 0, 0]}}
+    model, first = compiled(
+        chain, 3.0, bonds={"b": {"within": "a", "rule": "all-pairs"}}, jitter={"amplitude": 1e-3, "seed": 1}
+    )
+    whole: list[State] = []
+    with pytest.raises(BlowUpError) as story:
+        whole.extend(frame.state for frame in simulate(model, first, 5000, 1))
+    for state in (whole[len(whole) // 2], whole[-1]):
+        with pytest.raises(BlowUpError) as again:
+            list(simulate(model, state, 5000, 1, first=first))
+        assert str(again.value) == str(story.value)
+
+
+@pytest.mark.parametrize("name", ["rods", "balls"])
+def test_looking_for_a_blow_up_costs_little(name: str) -> None:
+    """It is done once per frame: a third of a round would be 3 % of a run that records every tenth round."""
+    model, state = compile_scene(paper_scene(name))
+    stepper = NumpyStepper(model, state)
+    stepper.advance(200)
+    rounds = min(_seconds(lambda: stepper.advance(200)) for _ in range(5)) / 200
+    looks = min(_seconds(lambda: [is_sound(model, state) for _ in range(200)]) for _ in range(5)) / 200
+    assert looks < rounds / 3
+
+
+def _seconds(act: Any) -> float:
+    began = time.perf_counter()
+    act()
+    return time.perf_counter() - began
