@@ -77,7 +77,8 @@ def _set_key(entries: dict[str, Node], path: Path, deeper: tuple[str, ...], node
         return {**entries, key: _set(known, path, deeper, node)}
     if not exists and (deeper or node.value is None):
         raise _refused(node.mark, path, _nothing_there(entries, path, deeper, node))
-    return {**{name: entry for name, entry in entries.items() if exists or name != key}, key: node}
+    kept = {name: entry for name, entry in entries.items() if exists or name != key}
+    return {**kept, key: node if node.value is not None else node.deleting()}
 
 
 def _nothing_there(entries: dict[str, Node], path: Path, deeper: tuple[str, ...], node: Node) -> str:

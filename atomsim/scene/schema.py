@@ -131,6 +131,7 @@ def _as_change(definition: Schema) -> Schema:
     change = copy.deepcopy(definition)
     change.pop("required", None)
     _allow_nulls(change)
+    change["additionalProperties"] = {"type": "null"}  # what is deleted may be a key of another shape
 
     def loosen(value: Schema) -> None:
         if "$ref" in value:

@@ -14,10 +14,19 @@ Scalar: TypeAlias = str | int | float | bool | None
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A value and its place; in a mapping, the place of its key. Nodes are never changed, so they may be shared."""
+    """A value and its place; in a mapping, the place of its key. Nodes are never changed, so they may be shared.
+
+    A node that `deletes` is the null that took the place of a value: it is no part of the scene any more, but a mistake
+    that it makes can still be reported at its place.
+    """
 
     value: Scalar | dict[str, Node] | list[Node]
     mark: Mark
+    deletes: bool = False
+
+    def deleting(self) -> Node:
+        """Return the null, laid over a value."""
+        return Node(None, self.mark, deletes=True)
 
     def child(self, part: str | int) -> Node | None:
         """Return the value under a key or an index, or None."""
@@ -30,7 +39,7 @@ class Node:
     def plain(self) -> Any:
         """Return the value without the marks: dicts, lists and scalars, all of them fresh."""
         if isinstance(self.value, dict):
-            return {key: node.plain() for key, node in self.value.items()}
+            return {key: node.plain() for key, node in self.value.items() if not node.deletes}
         if isinstance(self.value, list):
             return [node.plain() for node in self.value]
         return self.value
@@ -39,9 +48,8 @@ class Node:
 def merge(base: Node, top: Node) -> Node:
     """Lay one scene over another: mappings merge by key, everything else replaces.
 
-    Keys of the base keep their order, new ones follow. A null replaces like any other value: it stays in the tree,
-    where it counts as absent (`without_nulls`), so that a mistake can be reported at its place; what is declared
-    again after it is new and comes last.
+    Keys of the base keep their order, new ones follow. A null deletes; what is declared again after it is new and comes
+    last.
     """
     if not isinstance(base.value, dict) or not isinstance(top.value, dict):
         return top
@@ -52,7 +60,7 @@ def merge(base: Node, top: Node) -> Node:
             merged.pop(key, None)
             merged[key] = node
         else:
-            merged[key] = merge(known, node)
+            merged[key] = merge(known, node) if node.value is not None else node.deleting()
     return Node(merged, top.mark)
 
 

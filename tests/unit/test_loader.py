@@ -7,10 +7,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from atomsim.errors import Mark, SceneError
 from atomsim.scene.loader import MAX_PROBLEMS, load, loads
+from atomsim.scene.schema import schema
 from atomsim.scene.tree import Node, merge, without_nulls
 
 REPOSITORY = Path(__file__).parents[2]
@@ -167,6 +169,19 @@ def test_mistakes_of_several_files_name_each(folder: Path) -> None:
         'base.yaml:5:23: groups.ring.count: needs a whole number (got "none")',
         "base.yaml:6:34: groups.rod.step: unknown key `step`; to drop what is extended, write `step: null` in top.yaml",
     ]
+
+
+def test_a_group_becomes_another_shape_by_deleting_the_keys_of_the_old_one(folder: Path) -> None:
+    write("top.yaml", "extends: base.yaml\ngroups:\n  rod: {shape: ring, radius: 3, step: null}\n")
+    rod = load("top.yaml").scene.groups["rod"]
+    assert (rod.shape, rod.count, rod.radius) == ("ring", 3, 3.0)
+    assert (
+        load("base.yaml", ["groups.rod.step=null", "groups.rod.shape=ring", "groups.rod.radius=3"]).scene.groups["rod"]
+        == rod
+    )
+    jsonschema.validate(
+        {"extends": "base.yaml", "groups": {"rod": {"shape": "ring", "radius": 3, "step": None}}}, schema()
+    )
 
 
 @pytest.mark.parametrize(
