@@ -9,15 +9,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from atomsim.core.model import Floats, Frame
-from atomsim.errors import InputError, RunError
 from atomsim.drawing.camera import View
 from atomsim.drawing.files import MARK, check_target, write_whole
 from atomsim.drawing.framing import fit, is_drawable
 from atomsim.drawing.layout import LARGE, Layout, frame_size
 from atomsim.drawing.picture import Pixels, draw
+from atomsim.errors import InputError, RunError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
