@@ -13,7 +13,7 @@ from atomsim.compiler.coincident import coincident_pairs
 from atomsim.compiler.colors import PALETTE, hex_color
 from atomsim.compiler.pairs import RuleError, expand
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
-from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out
+from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out, place_of
 from atomsim.compiler.shapes import count_atoms, place, unit
 from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import (
@@ -140,7 +140,7 @@ class _Compiler:
             self._complain((*path, *_parts(error.key)), str(error))
             return None
         except SelectionError as error:
-            self._complain(path, str(error))
+            self._complain_of_selection(path, bonds, error)
             return None
         except MemoryError as error:
             self._complain(path, f"binds too much: {error}")
@@ -157,7 +157,7 @@ class _Compiler:
         try:
             table = CollisionTable(self._origin(*path), tuple(self._blocks(collisions)))
         except SelectionError as error:
-            self._complain(path, str(error))
+            self._complain_of_selection(path, collisions, error)
             return None
         if not n_collision_pairs(table):
             self._complain(path, "nothing can collide: there are no two different atoms here")
@@ -210,7 +210,7 @@ class _Compiler:
                 case _:
                     assert_never(force)
         except SelectionError as error:
-            self._complain(path, str(error))
+            self._complain_of_selection(path, force, error)
             return None
 
     def _check_colors(self) -> None:
@@ -297,6 +297,12 @@ class _Compiler:
     def _complain_if(self, path: Path, message: str | None) -> None:
         if message is not None:
             self._complain(path, message)
+
+    def _complain_of_selection(
+        self, path: Path, declaration: Bonds | Collisions | Force, error: SelectionError
+    ) -> None:
+        """Complain at the place in a declaration where the selection was written."""
+        self._complain((*path, *place_of(error.expression, declaration)), str(error))
 
     def _stop_if_wrong(self) -> None:
         if self._problems:

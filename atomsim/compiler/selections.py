@@ -4,21 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from atomsim.compiler.shapes import count_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Indices
-from atomsim.scene.language import BlockGroup, PlaneGroup, PolygonGroup, RingGroup, Scene
+from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
 from atomsim.scene.selection import parse_selection
+from atomsim.scene.source import Path
 
 LARGE = 1 << 26
 """Bytes of selections from which on it is worth asking whether more will fit."""
 
 
+_SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
+"""The keys under which declarations select atoms."""
+
+
 class SelectionError(ValueError):
-    """A selection that names no atoms; the message says why and what there is."""
+    """A selection that names no atoms; the message says why and what there is, `expression` is what was written."""
+
+    def __init__(self, expression: str, message: str) -> None:
+        self.expression = expression
+        super().__init__(message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +84,7 @@ class Selections:
         """Remember a selection: a thousand forces on all atoms share one array."""
         self._n_bytes += atoms.nbytes
         if self._n_bytes > LARGE and self._n_bytes > free_memory():
-            raise SelectionError("the selections up to here name more atoms than fit into memory")
+            raise SelectionError(selection[0], "the selections up to here name more atoms than fit into memory")
         atoms.setflags(write=False)
         self._found[selection] = atoms
 
@@ -107,15 +117,16 @@ class Selections:
             return np.arange(self._n_atoms)
         layout = self._layouts.get(part.group)
         if layout is None:
-            raise SelectionError(f"there is no group `{part.group}`; there are {', '.join(self._layouts)}")
+            raise SelectionError(expression, f"there is no group `{part.group}`; there are {', '.join(self._layouts)}")
         if not part.axes:
             return np.arange(layout.start, layout.stop)
         grid = layout.grid if len(part.axes) > 1 else (layout.stop - layout.start,)
         if len(part.axes) != len(grid):
             shape = " × ".join(str(count) for count in layout.grid)
             raise SelectionError(
+                expression,
                 f"`{expression}` has {len(part.axes)} indices, but {part.group} is {shape} atoms "
-                f"({'one index' if len(layout.grid) == 1 else f'one or {len(layout.grid)} indices'})"
+                f"({'one index' if len(layout.grid) == 1 else f'one or {len(layout.grid)} indices'})",
             )
         places = [_along_axis(axis, count, expression, part.group) for axis, count in zip(part.axes, grid, strict=True)]
         index = np.zeros((1,) * len(grid), dtype=np.int64)
@@ -131,8 +142,24 @@ def _along_axis(axis: int | slice, count: int, expression: str, group: str) -> I
     if isinstance(axis, slice):
         places = np.arange(count)[axis]
         if not places.size:
-            raise SelectionError(f"`{expression}` selects no atoms: {group} has {count} there, 0 to {count - 1}")
+            raise SelectionError(
+                expression, f"`{expression}` selects no atoms: {group} has {count} there, 0 to {count - 1}"
+            )
         return places
     if not -count <= axis < count:
-        raise SelectionError(f"`{expression}` is out of range: {group} has {count} there, 0 to {count - 1}")
+        raise SelectionError(expression, f"`{expression}` is out of range: {group} has {count} there, 0 to {count - 1}")
     return np.array([axis % count])
+
+
+def place_of(expression: str, declaration: Declaration) -> Path:
+    """Return where in a declaration a selection was written, as a path inside it; empty if nowhere."""
+    places = (_place_in(getattr(declaration, key, None), expression, (key,)) for key in _SELECTION_KEYS)
+    return next(filter(None, places), ())
+
+
+def _place_in(value: Any, expression: str, path: Path) -> Path | None:
+    """Look for an expression in selections as deeply nested as a declaration nests them."""
+    if value in (expression, (expression,)):
+        return path
+    places = enumerate(value) if isinstance(value, tuple) else ()
+    return next(filter(None, (_place_in(inner, expression, (*path, index)) for index, inner in places)), None)

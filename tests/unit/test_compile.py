@@ -56,7 +56,7 @@ def test_mistakes_are_told_together_with_their_places_in_the_order_of_the_file()
     with pytest.raises(SceneError) as error:
         compile_scene(loaded.scene, loaded.source)
     assert str(error.value) == (
-        "here.yaml:7:3: forces.late: `a[7]` is out of range: a has 3 there, 0 to 2\n"
+        "here.yaml:7:22: forces.late.acts_on: `a[7]` is out of range: a has 3 there, 0 to 2\n"
         "here.yaml:9:46: bonds.far.threshold: nothing is bound: no two atoms are less than 0.5 apart"
     )
 
