@@ -1,0 +1,60 @@
+"""Which libraries a command loads: start-up is guarded by what is imported, not by the clock."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+RODS = str(ROOT / "scenes" / "rods.yaml")
+
+LIBRARIES = {"h5py", "llvmlite", "matplotlib", "numba", "numpy", "PIL", "pydantic", "rich", "scipy", "yaml"}
+
+PROBE = """
+import json, sys
+sys.argv = ["atomsim", *sys.argv[2:]]
+from atomsim.cli import main
+try:
+    main()
+except SystemExit:
+    pass
+open("modules.json", "w").write(json.dumps(sorted(set(module.split(".")[0] for module in sys.modules))))
+"""
+
+
+def loaded(folder: Path, *arguments: str) -> set[str]:
+    """Run a command in a process of its own and return which of the libraries it loaded."""
+    subprocess.run([sys.executable, "-c", PROBE, "-", *arguments], cwd=folder, check=True, capture_output=True)
+    return LIBRARIES & set(json.loads((folder / "modules.json").read_text()))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "libraries"),
+    [
+        (("--help",), set()),
+        (("--version",), {"pydantic"}),  # typer's own
+        (("run", "--help"), {"pydantic"}),
+        (("check", RODS), {"numpy", "pydantic", "yaml"}),
+        (("run", RODS, "--rounds", "50"), {"h5py", "numpy", "pydantic", "yaml"}),
+        (("schema",), {"pydantic", "yaml"}),
+    ],
+    ids=lambda value: " ".join(Path(part).name for part in value) if isinstance(value, tuple) else "",
+)
+def test_a_command_loads_what_it_needs(tmp_path, arguments, libraries):
+    assert loaded(tmp_path, *arguments) <= libraries
+
+
+def test_only_pictures_load_matplotlib(tmp_path):
+    assert "matplotlib" not in loaded(tmp_path, "run", RODS, "--rounds", "50")
+    assert "matplotlib" not in loaded(tmp_path, "show", "out.h5")
+    assert "matplotlib" in loaded(tmp_path, "render", "out.h5", "--size", "64x48")
+
+
+def test_importing_the_package_loads_nothing():
+    code = f"import sys, atomsim; print(sorted({LIBRARIES!r} & set(sys.modules)))"
+    printed = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+    assert printed == "[]\n"
