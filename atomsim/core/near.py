@@ -164,7 +164,8 @@ def _cell_width(position: Floats, middle: Floats, cutoff: float) -> float:
 
 def _cell_key(position: Floats, middle: Floats, width: float) -> Indices:
     """Number the cells: x, y, z in 21 bits each."""
-    cell = (position - middle[:, None]) / width
+    with np.errstate(over="ignore"):  # what is infinitely far out is in an outermost cell
+        cell = (position - middle[:, None]) / width
     np.floor(cell, out=cell)
     np.clip(cell, -_MAX_CELL, _MAX_CELL, out=cell)
     x, y, z = (cell + (_MAX_CELL + 1)).astype(np.int64)
