@@ -1,8 +1,19 @@
-"""Every error a user can cause, with the exit code it ends in; knows nothing of scenes, arrays or files."""
+"""Every error a user can cause, with the exit code it ends in; knows nothing of scenes or arrays."""
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
+from pathlib import Path
+
+
+def command(words: str, path: Path) -> str:
+    """Return a command on a file as it can be pasted into a shell, whatever the file is called.
+
+    >>> command("render", Path("my run.h5"))
+    "atomsim render 'my run.h5'"
+    """
+    return f"atomsim {words} {shlex.quote(str(path))}"
 
 
 class AtomsimError(Exception):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +10,7 @@ import typer
 
 from atomsim.cli.options import Backend, Threads
 from atomsim.cli.output import say, tell
+from atomsim.errors import command
 
 if TYPE_CHECKING:
     from atomsim.record import Outcome
@@ -110,7 +110,7 @@ def _warn(warning: str) -> None:
 
 
 def _to_go_on(path: Path) -> str:
-    return f"to go on: atomsim run --resume {shlex.quote(str(path))}"
+    return f"to go on: {command('run --resume', path)}"
 
 
 def _summarise(outcome: Outcome, seconds: float) -> None:
@@ -123,4 +123,4 @@ def _summarise(outcome: Outcome, seconds: float) -> None:
     say(f"{outcome.path}: {n_rounds:,} rounds in {seconds:.2f} s ({rate(n_rounds / seconds)} rounds/s), {size}")
     say(f"computed by {outcome.backend}")
     say(f"digest of round {outcome.last_round}: {outcome.digest}")
-    say(f"next: atomsim render {shlex.quote(str(outcome.path))}")
+    say(f"next: {command('render', outcome.path)}")

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import h5py
 import numpy as np
 
-from atomsim.errors import RunError
+from atomsim.errors import RunError, command
 from atomsim.trajectory import disk
 from atomsim.trajectory.document import FIELDS, contents_digest, document, storable
 from atomsim.trajectory.interrupts import held
@@ -38,7 +38,7 @@ def build(journal: Journal, path: Path) -> None:
     if len(journal.series) == 0:
         raise RunError(
             f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet; "
-            f"to run it: atomsim run --resume {path}"
+            f"to run it: {command('run --resume', path)}"
         )
     temporary = disk.beside(path, ".tmp")
     try:
@@ -54,7 +54,7 @@ def build(journal: Journal, path: Path) -> None:
 
 def _remedy(path: Path) -> str:
     if journal_path(path).exists():
-        return f"all frames are safe in {journal_path(path)}: make room, then `atomsim recover {path}`"
+        return f"all frames are safe in {journal_path(path)}: make room, then `{command('recover', path)}`"
     return "its folder or its journal is gone, and the frames with it"
 
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol, overload
 import numpy as np
 
 from atomsim.core.model import Floats, Frame, Indices
-from atomsim.errors import InputError
+from atomsim.errors import InputError, command
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal import Journal
@@ -63,7 +63,7 @@ class Trajectory(Sequence[Frame]):
         path: the trajectory as the user named it.
 
     Raises:
-        InputError: it is missing, damaged or not a trajectory.
+        InputError: it is missing, damaged or not a trajectory, or holds no frame yet.
 
     Attributes:
         path: as the user named it.
@@ -94,6 +94,9 @@ class Trajectory(Sequence[Frame]):
         self.lost_bytes = 0
         if self.from_journal:
             journal = Journal(os.open(found, os.O_RDONLY | os.O_CLOEXEC))
+            if len(journal.series) == 0:
+                journal.close()
+                raise DamageError(f"holds no frame yet; to run it: {command('run --resume', self.path)}")
             self.lost_bytes = journal.lost
             return journal
         if signature != _HDF5_SIGNATURE:
@@ -155,13 +158,14 @@ class Trajectory(Sequence[Frame]):
         notices = []
         if self.from_journal:
             notices.append(
-                f"{self.path}: read from its journal up to round {self.rounds[-1]}; to go on: atomsim run --resume "
-                f"{self.path}; to make the file of what there is: atomsim recover {self.path}"
+                f"{self.path}: read from its journal up to round {self.rounds[-1]}; to go on: "
+                f"{command('run --resume', self.path)}; to make the file of what there is: "
+                f"{command('recover', self.path)}"
             )
         elif self.has_journal:
             notices.append(
                 f"{self.path}: there is also a journal of a newer run that has not finished; to go on with it: "
-                f"atomsim run --resume {self.path}"
+                f"{command('run --resume', self.path)}"
             )
         if self.lost_bytes:
             notices.append(f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out")

@@ -13,7 +13,7 @@ from types import TracebackType
 import numpy as np
 
 from atomsim.core.model import Frame, State
-from atomsim.errors import InputError, RunError
+from atomsim.errors import InputError, RunError, command
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
@@ -226,7 +226,8 @@ def _check_target(path: Path, *, replace: bool) -> None:
         raise InputError(f"{path}: is not a regular file")
     for taken in (path, journal_path(path)):
         if taken.exists() and not replace:
-            raise InputError(f"{taken} exists; add --force to replace it, or go on with: atomsim run --resume {path}")
+            go_on = command("run --resume", path)
+            raise InputError(f"{taken} exists; add --force to replace it, or go on with: {go_on}")
 
 
 def _last_state(journal: Journal) -> State | None:

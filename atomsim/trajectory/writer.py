@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from atomsim.errors import RunError
+from atomsim.errors import RunError, command
 from atomsim.trajectory import disk
 from atomsim.trajectory.document import document
 from atomsim.trajectory.header import End, Header
@@ -177,5 +177,5 @@ class JournalWriter:
             os.ftruncate(self._fd, self._whole)
         return RunError(
             f"{self._path}: {error.strerror}; what was recorded before is intact in it: "
-            f"make room, then go on with `atomsim run --resume {self._path.with_suffix('')}`"
+            f"make room, then go on with `{command('run --resume', self._path.with_suffix(''))}`"
         )
