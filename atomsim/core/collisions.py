@@ -23,7 +23,7 @@ SKIN = 0.5
 NARROWEST_SKIN, WIDEST_SKIN = 0.1, 8.0
 """Between these the next list may look further, or less far."""
 
-MAKING_COST = 100
+MAKING_COST = 400
 """Finding the partners of one atom takes about as long as one round of so many partners."""
 
 
@@ -55,7 +55,7 @@ class NearList:
             if squared_distance(self._made_at, involved).max() < squared_reach(self._skin):
                 return False
             n_near = 2 * sum(first.size for first, _ in self.pairs)
-            self._skin = better_skin(self._skin, self._n_updates, involved.shape[1], n_near)
+            self._skin = better_skin(self._skin, self._n_updates, MAKING_COST * involved.shape[1], n_near)
         self._made_at = involved.copy()
         self._n_updates = 0
         self.pairs = [table_pairs_near(table, position, 2.0 + self._skin) for table in self._tables]
@@ -67,16 +67,16 @@ def squared_reach(skin: float) -> float:
     return 0.25 * 0.999999 * skin * skin
 
 
-def better_skin(skin: float, n_rounds: int, n_atoms: float, n_near: int) -> float:
+def better_skin(skin: float, n_rounds: int, making: float, n_near: int) -> float:
     """Return how far the next list should look, so that making lists costs one to four times as much as using them.
 
     Args:
         skin: how much further than contact the last list looked [length].
         n_rounds: rounds that it was valid for.
-        n_atoms: atoms whose partners it listed; those whose partners are found more easily may count less.
+        making: what making it cost, in partners used in one round.
         n_near: partners it listed, over all these atoms.
     """
-    making, using = MAKING_COST * n_atoms, n_near * n_rounds
+    using = n_near * n_rounds
     if making > 4 * using:
         return min(1.4 * skin, WIDEST_SKIN)
     return max(skin / 1.4, NARROWEST_SKIN) if making < using else skin

@@ -11,6 +11,9 @@ from atomsim.core.numba_backend.jit import inner, kernel
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
 from atomsim.core.numba_backend.records import Bonds, Forces, Grids, Motion, NearPairs, Queries, Watch
 
+MAKING_COST = 100
+"""Finding the partners of one atom takes a kernel about as long as one round of so many partners."""
+
 better_skin, squared_reach = inner(collisions.better_skin), inner(collisions.squared_reach)
 
 
@@ -130,7 +133,7 @@ def _is_stale(watch: Watch, position: Floats) -> bool:
 def _renew(position: Floats, watch: Watch, queries: Queries, grids: Grids, near: NearPairs) -> bool:
     """Make the list of near pairs of all atoms anew; return whether it had room for them."""
     n_near = near.row_first_entry[near.table_first_row[-1]]
-    watch.skin[0] = better_skin(watch.skin[0], watch.n_rounds[0], queries.cost[0], n_near)
+    watch.skin[0] = better_skin(watch.skin[0], watch.n_rounds[0], MAKING_COST * queries.cost[0], n_near)
     watch.n_rounds[0] = 0
     for component in range(3):
         for slot in range(position.shape[1]):

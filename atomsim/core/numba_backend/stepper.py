@@ -18,7 +18,7 @@ from atomsim.core.numba_backend.force_plan import Pushes, in_order, plan_forces,
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
 from atomsim.core.numba_backend.near_plan import empty_list, plan_grids, plan_queries
 from atomsim.core.numba_backend.records import LANES, Forces, Grids, Motion, Watch
-from atomsim.core.numba_backend.round_kernels import advance_rounds
+from atomsim.core.numba_backend.round_kernels import MAKING_COST, advance_rounds
 
 CALL_ATOM_ROUNDS = 1 << 21
 """Atoms times rounds computed in one call of a kernel, which nothing can interrupt: some tenths of a second."""
@@ -86,7 +86,8 @@ class NumbaStepper:
         skin, n_rounds = self._watch.skin, self._watch.n_rounds
         if n_rounds[0]:
             n_near = sum(share.n_near for share in self._shares)
-            skin[0] = better_skin(skin[0], n_rounds[0], sum(share.search_cost for share in self._shares), n_near)
+            making = MAKING_COST * sum(share.search_cost for share in self._shares)
+            skin[0] = better_skin(skin[0], n_rounds[0], making, n_near)
             n_rounds[0] = 0
         position, cutoff = self._motion.here, 2.0 + float(skin[0])
         np.copyto(self._watch.made_at, position)
