@@ -39,6 +39,10 @@ figures: $(VENV)/installed ## draw the pictures of the docs again
 reference: $(VENV)/installed ## write the generated pages of the docs and the JSON Schema again
 	$(BIN)/python docs/make_reference.py
 
+bench: $(VENV)/installed-bench ## time everything, on a quiet machine: five minutes; docs/speed.md shows the result
+	$(BIN)/python -m benchmarks --json docs/speed.json
+	$(BIN)/python -m benchmarks.page docs/speed.json
+
 clean: ## remove what the other targets made
 	rm -rf $(VENV) rods.h5 rods.png
 
@@ -51,3 +55,10 @@ $(VENV)/installed-dev: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $(VENV)/installed $@
+
+$(VENV)/installed-bench: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
+	@for peer in jax warp-lang openmm; do \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check $$peer || echo "$$peer: not installed"; \
+	done
+	@touch $@
