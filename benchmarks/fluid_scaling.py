@@ -17,16 +17,20 @@ NUMPY, ONE, TWO = "NumPy", "Numba, 1 thread", "Numba, 2 threads"
 
 
 class Size(NamedTuple):
-    """A fluid, and how it is timed: a turn holds several renewals of the list of near pairs, which cost most."""
+    """A fluid, and how it is timed: which rounds, and how often.
+
+    Every pass goes over the same rounds, for a free fluid thins out. They hold several renewals of the list of near
+    pairs, which cost most.
+    """
 
     n_atoms: int
     warm_up: int
     n_rounds: int
-    n_turns: int
+    n_passes: int
 
 
-SIZES = (Size(1000, 200, 400, 12), Size(10_000, 100, 200, 8), Size(100_000, 30, 60, 4), Size(1_000_000, 10, 25, 2))
-QUICK_SIZES = (Size(1000, 20, 100, 3), Size(10_000, 20, 40, 3))
+SIZES = (Size(1000, 50, 100, 20), Size(10_000, 50, 100, 8), Size(100_000, 30, 60, 4), Size(1_000_000, 10, 25, 2))
+QUICK_SIZES = (Size(1000, 50, 100, 2), Size(10_000, 20, 40, 2))
 
 
 def measure(quick: bool) -> Results:
@@ -37,11 +41,14 @@ def measure(quick: bool) -> Results:
 def _measure(size: Size) -> Results:
     model, state = free_fluid(size.n_atoms)
     makers = _makers()
-    steppers = {name: make(model, state) for name, make in makers.items() if make}
-    for stepper in steppers.values():
-        stepper.advance(size.warm_up)
-    turns = {name: partial(stepper.advance, size.n_rounds) for name, stepper in steppers.items()}
-    seconds = in_turns(turns, size.n_turns)
+    seconds: dict[str, list[float]] = {name: [] for name, make in makers.items() if make}
+    for _ in range(size.n_passes):
+        steppers = {name: make(model, state) for name, make in makers.items() if make}
+        for stepper in steppers.values():
+            stepper.advance(size.warm_up)
+        turns = {name: partial(stepper.advance, size.n_rounds) for name, stepper in steppers.items()}
+        for name, times in in_turns(turns, 1).items():
+            seconds[name] += times
     unit = 1e-9 * size.n_atoms * size.n_rounds
     return {name: spread(seconds[name], unit) if name in seconds else None for name in makers}
 
