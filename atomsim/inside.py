@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from atomsim.compiler import compile_scene
+from atomsim.compiler.shapes import count_atoms
 from atomsim.core.model import Model, State
 from atomsim.errors import InputError, SceneError
 from atomsim.scene import LoadedScene, loads
@@ -43,6 +44,9 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
         InputError: it is no valid scene, or not that of the frames.
     """
     loaded = scene_inside(header, path)
+    n_atoms = sum(count_atoms(group) for group in loaded.scene.groups.values())
+    if n_atoms != header.n_atoms:  # asked before any are made: a liar may ask for as many as memory holds
+        raise _misleading(path, "atoms")
     try:
         model, state = compile_scene(loaded.scene, loaded.source)
     except SceneError as error:
@@ -56,7 +60,7 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
     )
     differing = _differing(header, recompiled)
     if differing is not None:
-        raise InputError(f"{path}: damaged, or made to mislead: the scene inside has other {differing} than the frames")
+        raise _misleading(path, differing)
     return loaded, model, state
 
 
@@ -65,10 +69,12 @@ def _broken(path: Path, error: SceneError) -> InputError:
     return InputError(f"{path}: damaged, or not a trajectory of atomsim (the scene inside: {problem})")
 
 
+def _misleading(path: Path, what: str) -> InputError:
+    return InputError(f"{path}: damaged, or made to mislead: the scene inside has other {what} than the frames")
+
+
 def _differing(one: Header, other: Header) -> str | None:
     """Say in what two headers of one scene differ, if they do; rounds may, they are asked for with each run."""
-    if one.n_atoms != other.n_atoms:
-        return "atoms"
     if [(group.name, group.start) for group in one.groups] != [(group.name, group.start) for group in other.groups]:
         return "groups"
     if not (np.array_equal(one.bond, other.bond) and np.array_equal(one.bond_table, other.bond_table)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from pathlib import Path
 
 INTERRUPTED = 130
 
@@ -30,10 +31,19 @@ def main() -> None:
     except BrokenPipeError:  # whoever read our output has seen enough
         code = 1
     except OSError as error:
-        tell(f"{error.filename or 'the output'}: {error.strerror or error}")
+        tell(f"{error.filename or _nameless()}: {error.strerror or error}")
         code = 1
     _give_output_up()
     sys.exit(code)
+
+
+def _nameless() -> str:
+    """Say what an error of the system is about when it names no file."""
+    try:
+        Path.cwd()
+    except OSError:
+        return "the current folder"
+    return "the output"
 
 
 def _run_command() -> None:

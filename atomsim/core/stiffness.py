@@ -14,8 +14,8 @@ TOLERANCE = 1e-7
 MOST_PRODUCTS, FEWEST_PRODUCTS = 2000, 30
 """The most are enough for any scene tried, the fewest come within a few per cent."""
 
-MOST_PULLS = 1 << 27
-"""Between the two, products stop when so many springs have been pulled: after some ten seconds."""
+MOST_PULLS = 1 << 25
+"""Between the two, products stop when so many springs have been pulled: after a second or two."""
 
 
 def largest_time_step(model: Model, state: State) -> float:

@@ -83,6 +83,8 @@ def _base_name(extends: Node, folder: str, chain: list[str]) -> str:
         raise refused(f"goes through more than {MAX_FILES} files")
     if not target.exists():
         raise refused(_no_such_file(base))
+    if not target.is_file():
+        raise refused(f"leads to something that is no file (got {shown(extends.plain())})")
     return base
 
 

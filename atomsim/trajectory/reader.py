@@ -22,6 +22,11 @@ from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
+def is_trajectory(path: Path) -> bool:
+    """Tell whether a regular file begins as a trajectory or a journal does; what follows may be damaged."""
+    return first_bytes(path, 8) in (HEAD, _HDF5_SIGNATURE)
+
+
 class _Source(Protocol):
     header: Header
     series: Series

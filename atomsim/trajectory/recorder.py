@@ -18,7 +18,7 @@ from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal import Journal
-from atomsim.trajectory.reader import Trajectory
+from atomsim.trajectory.reader import Trajectory, is_trajectory
 from atomsim.trajectory.records import journal_path
 from atomsim.trajectory.rows import fill, frame_of, row_dtype
 from atomsim.trajectory.writer import JournalWriter
@@ -225,6 +225,8 @@ def _check_target(path: Path, *, replace: bool) -> None:
     if path.exists() and not path.is_file():
         raise InputError(f"{path}: is not a regular file")
     for taken in (path, journal_path(path)):
+        if taken.exists() and not is_trajectory(taken):
+            raise InputError(f"{taken} exists and is no trajectory; choose another name with -o")
         if taken.exists() and not replace:
             go_on = command("run --resume", path)
             raise InputError(f"{taken} exists; add --force to replace it, or go on with: {go_on}")

@@ -99,13 +99,26 @@ def test_an_exception_leaves_everything_recorded_in_the_journal(tmp_path: Path) 
 @pytest.mark.parametrize("suffix", ["", ".part"])
 def test_what_exists_is_not_touched_without_replace(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / "out.h5"
-    taken = tmp_path / f"out.h5{suffix}"
-    taken.write_text("precious")
+    taken = killed(path, header(), stop_after=20) if suffix else record(path, header())
+    before = digest_of(taken)
     with pytest.raises(InputError) as caught:
         Recorder(path, header())
     assert str(caught.value) == (
         f"{taken} exists; add --force to replace it, or go on with: atomsim run --resume {path}"
     )
+    assert digest_of(taken) == before
+    assert list(tmp_path.iterdir()) == [taken]
+
+
+@pytest.mark.parametrize("suffix", ["", ".part"])
+@pytest.mark.parametrize("replace", [True, False])
+def test_what_is_no_trajectory_is_never_replaced(tmp_path: Path, suffix: str, replace: bool) -> None:
+    """A slip such as `-o scene.yaml --force` must not cost the scene."""
+    taken = tmp_path / f"out.h5{suffix}"
+    taken.write_text("precious")
+    with pytest.raises(InputError) as caught:
+        Recorder(tmp_path / "out.h5", header(), replace=replace)
+    assert str(caught.value) == f"{taken} exists and is no trajectory; choose another name with -o"
     assert taken.read_text() == "precious"
     assert list(tmp_path.iterdir()) == [taken]
 
