@@ -1,0 +1,158 @@
+"""Closed, full and broken streams, poor encodings: the exit code is that of the work, and no traceback comes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from support.process import COMMAND, finish
+
+from atomsim.compiler import compile_scene
+from atomsim.core.simulate import simulate
+from atomsim.scene import load
+from atomsim.trajectory import End, Header, Recorder
+
+SCENE = Path(__file__).parents[2] / "scenes" / "rods.yaml"
+RUN = ("run", SCENE, "--rounds", "20", "--backend", "numpy", "--force")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with one trajectory in it."""
+    folder = tmp_path_factory.mktemp("output")
+    assert finish(*RUN, cwd=folder).returncode == 0
+    return folder
+
+
+def closing(*numbers: int):
+    """Return what a shell does for `>&-`."""
+
+    def close():
+        for number in numbers:
+            os.close(number)
+
+    return close
+
+
+@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)])
+def test_closed_streams(folder, closed):
+    """Files that are opened next must not take their numbers: HDF5 and Numba write to 2 when they feel like it."""
+    whole = (folder / "out.h5").read_bytes()
+    done = subprocess.run([*COMMAND, *RUN], cwd=folder, preexec_fn=closing(*closed), check=False, timeout=60)
+    assert done.returncode == 0
+    assert (folder / "out.h5").read_bytes() == whole
+    for arguments, code in ((("show", "out.h5"), 0), (("show", "no.h5"), 2), (("run", "--what"), 2)):
+        done = subprocess.run(
+            [*COMMAND, *arguments],
+            cwd=folder,
+            preexec_fn=closing(*closed),
+            check=False,
+            timeout=60,
+            **{name: subprocess.PIPE for number, name in ((1, "stdout"), (2, "stderr")) if number not in closed},
+        )
+        assert done.returncode == code, arguments
+        assert b"Traceback" not in (done.stderr or b"")
+
+
+@pytest.mark.parametrize(
+    "command", [("show", "out.h5"), ("check", SCENE), ("schema",), ("compare", "out.h5", "out.h5")]
+)
+def test_results_that_cannot_be_written(folder, command):
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [*COMMAND, *command], cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert (done.returncode, done.stderr) == (1, "the output: No space left on device\n")
+
+
+def test_messages_that_cannot_be_written(folder):
+    with Path("/dev/full").open("wb") as full:
+        for arguments, code in ((("show", "no.h5"), 2), (RUN, 0)):
+            done = subprocess.run([*COMMAND, *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=full, check=False)
+            assert done.returncode == code
+
+
+@pytest.mark.parametrize("command", [("show", "out.h5"), ("schema",)])
+def test_a_reader_that_has_seen_enough(folder, command):
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [*COMMAND, *command], cwd=folder, stdout=write, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (1, "")
+
+
+@pytest.mark.parametrize(
+    "variables",
+    [
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+        {"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii:strict"},
+    ],
+)
+def test_encodings_that_lack_our_letters(folder, variables):
+    """What goes into a file or a pipe is UTF-8, whatever the locale: a scene has to come back as it was."""
+    for command in (("show", "out.h5"), ("show", "out.h5", "--scene")):
+        done = finish(*command, cwd=folder, **variables)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert done.stdout == finish(*command, cwd=folder).stdout
+    assert "τ = 0.01" in finish("show", "out.h5", cwd=folder, **variables).stdout
+    done = finish("check", "no.yaml", "--set", "groups.τ×—=1", cwd=folder, **variables)
+    assert (done.returncode, done.stderr) == (2, "no.yaml: there is no such file\n")
+
+
+def test_a_terminal_that_lacks_our_letters_gets_escapes(folder):
+    """On a terminal of another encoding UTF-8 would be gibberish."""
+    leader, follower = os.openpty()
+    done = subprocess.run(
+        [*COMMAND, "show", "out.h5"],
+        cwd=folder,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        stdout=follower,
+        stderr=subprocess.PIPE,
+        check=False,
+    )
+    os.close(follower)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert rb"\u03c4 = 0.01" in os.read(leader, 65536)
+    os.close(leader)
+
+
+def test_titles_do_not_command_the_terminal(cli):
+    """A scene file cannot hold such characters, but a trajectory made to do damage can."""
+    inside = load("scenes/rods.yaml")
+    model, state = compile_scene(inside.scene, inside.source)
+    model = replace(model, title="\x1b[31mred\x07 alert")
+    header = Header.of(model, scene_text=inside.source.text, scene_name="\x9b2Jrods", rounds=10, record_every=10)
+    with Recorder("out.h5", header) as recorder:
+        for frame in simulate(model, state, 10, 10):
+            recorder.append(frame)
+        recorder.finish(End("finished"))
+    result = cli("show", "out.h5")
+    assert result.code == 0
+    assert result.out.startswith("out.h5: \\x1b[31mred\\x07 alert\n  scene      \\x9b2Jrods\n")
+    assert cli("render", "out.h5", "--size", "64x48").code == 0
+
+
+def test_too_little_memory_is_one_line(folder):
+    """A limit that NumPy fits into and the scene does not."""
+    script = (
+        "import resource, atomsim.record; resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29)); "
+        "from atomsim.cli import main; main()"
+    )
+    settings = ("--set", "groups.left.count=9000000", "--set", "bonds.left=null", "--set", "collisions=null")
+    done = subprocess.run(
+        [sys.executable, "-c", script, "check", SCENE, *settings],
+        cwd=folder,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode in (1, 2)
+    assert "memory" in done.stderr or "allocate" in done.stderr
+    assert done.stderr.count("\n") == 1
