@@ -35,7 +35,7 @@ from atomsim.core.model import (
     TorqueForce,
     Within,
 )
-from atomsim.core.near import squared_distance
+from atomsim.core.near import pair_squares, squared_distance
 from atomsim.errors import Problem, SceneError
 from atomsim.scene.language import (
     Bonds,
@@ -147,7 +147,7 @@ class _Compiler:
             return None
         if self._found_coincident(path, first, second, "bound"):
             return None
-        initial = squared_distance(self._placed[first].T, self._placed[second].T)
+        initial = pair_squares(self._placed.T, first, second)
         rest_squared = self._rest_squared(path, bonds.rest, initial)
         return BondTable(self._origin(*path), _read_only(first), _read_only(second), _read_only(rest_squared))
 
@@ -241,7 +241,7 @@ class _Compiler:
     def _found_coincident(self, path: Path, first: Indices, second: Indices, what: str) -> bool:
         """Complain of a pair at distance zero, which has no direction to push in; before or after jitter."""
         for position in (self._placed, self._position):
-            same = np.flatnonzero((position[first] == position[second]).all(axis=1))
+            same = np.flatnonzero(pair_squares(position.T, first, second) == 0.0)
             if same.size:
                 one, other = int(first[same[0]]), int(second[same[0]])
                 more = " (and so do others)" if same.size > 1 else ""

@@ -36,6 +36,8 @@ def expand(bonds: Bonds, selections: Selections, position: Floats) -> Pairs:
     """
     n_atoms = position.shape[0]
     found = [pairs for pairs in _expand_each(bonds, selections, position) if pairs[0].size]
+    if len(found) == 1 and bonds.rule == "all-pairs" and bonds.between is None:
+        return found[0]  # canonical as it is, and perhaps large
     keys = [np.minimum(one, other) * n_atoms + np.maximum(one, other) for one, other in found]
     key = np.unique(np.concatenate(keys)) if keys else np.empty(0, dtype=np.int64)
     first, second = key // n_atoms, key % n_atoms
@@ -83,8 +85,7 @@ def _inside(
     atoms = selections.atoms((expression,))
     match bonds:
         case AllPairsBonds():
-            first, second = np.triu_indices(atoms.size, 1)
-            return atoms[first], atoms[second]
+            return _all_pairs(atoms)
         case DistanceThresholdBonds():
             if bonds.metric == "space":
                 first, second = near_pairs(position[atoms].T, None, bonds.threshold)
@@ -98,6 +99,15 @@ def _inside(
             return _listed(bonds, atoms, atoms)
         case _:
             assert_never(bonds)
+
+
+def _all_pairs(atoms: Indices) -> Pairs:
+    """Return every pair of ascending atoms, sorted."""
+    partners = np.arange(atoms.size - 1, -1, -1)
+    begin = np.cumsum(partners) - partners
+    second = np.arange(int(partners.sum()))
+    second -= np.repeat(begin - np.arange(1, atoms.size + 1), partners)
+    return np.repeat(atoms, partners), atoms[second]
 
 
 def _across(

@@ -80,6 +80,8 @@ def _disjoint_spans(first: Indices, second: Indices) -> Iterator[slice]:
 def _local(first: Indices, second: Indices) -> tuple[slice, Indices, Indices]:
     """Return the span of atoms that sorted pairs touch, and the pairs counted from its start."""
     atoms = slice(int(first[0]), int(second.max()) + 1)
+    if not atoms.start:
+        return atoms, first, second  # a large body is not copied for nothing
     return atoms, first - atoms.start, second - atoms.start
 
 
@@ -128,11 +130,17 @@ class DenseForm:
     def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats) -> None:
         n_atoms = atoms.stop - atoms.start
         n_tiles = max(1, min(n_atoms // 2, round(n_atoms * n_atoms * 48 / TILE_BYTES)))
-        edges = [n_atoms * tile // n_tiles for tile in range(n_tiles + 1)]
+        edges = np.arange(n_tiles + 1) * n_atoms // n_tiles
+        above, below = np.searchsorted(first, edges), _n_below(second, edges)
+        by_second = np.argsort(second, kind="stable")
         self.atoms = atoms
-        self._tiles = [
-            _DenseTile(slice(start, stop), n_atoms, first, second, rest_squared) for start, stop in pairwise(edges)
-        ]
+        self._tiles = []
+        for tile, columns in enumerate(starmap(slice, pairwise(edges.tolist()))):
+            upper, lower = slice(*above[tile : tile + 2]), by_second[slice(*below[tile : tile + 2])]
+            partner = np.concatenate((second[upper], first[lower]))
+            atom = np.concatenate((first[upper], second[lower])) - columns.start
+            rest = np.concatenate((rest_squared[upper], rest_squared[lower]))
+            self._tiles.append(_DenseTile(columns, n_atoms, partner, atom, rest))
         self._left = np.ones((3, n_atoms, 2))
         self._right = np.ones((3, 2, n_atoms))
         largest = max(tile.rest_squared.size for tile in self._tiles)
@@ -159,18 +167,21 @@ class DenseForm:
         return self._subtotal
 
 
+def _n_below(atoms: Indices, edges: Indices) -> Indices:
+    """Return how many of the atoms, in any order, are below each edge."""
+    counts: Indices = np.concatenate(([0], np.cumsum(np.bincount(atoms, minlength=int(edges[-1])))))[edges]
+    return counts
+
+
 class _DenseTile:
     """The constant part of some columns of a dense form: r² per (partner, atom) and the places that are no pair."""
 
-    def __init__(self, columns: slice, n_atoms: int, first: Indices, second: Indices, rest_squared: Floats) -> None:
+    def __init__(self, columns: slice, n_atoms: int, partner: Indices, atom: Indices, rest_squared: Floats) -> None:
         self.columns = columns
         self.rest_squared = np.zeros((n_atoms, columns.stop - columns.start))
+        self.rest_squared[partner, atom] = rest_squared
         is_bound = np.zeros(self.rest_squared.shape, dtype=bool)
-        for partner, atom in ((first, second), (second, first)):
-            inside = (atom >= columns.start) & (atom < columns.stop)
-            place = partner[inside], atom[inside] - columns.start
-            self.rest_squared[place] = rest_squared[inside]
-            is_bound[place] = True
+        is_bound[partner, atom] = True
         self.unbound = np.flatnonzero(~is_bound)
         self.has_gaps = self.unbound.size > columns.stop - columns.start
         # an atom is no partner of itself either, but there the difference is zero

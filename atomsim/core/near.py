@@ -20,6 +20,9 @@ TILE = 1 << 15
 DENSE_LIMIT = 128
 """Up to so many pairs per atom it is cheaper to look at all of them than to sort atoms into cells."""
 
+STRETCH = 1 << 18
+"""Pairs measured at a time: a few megabytes per array."""
+
 Found = tuple[Indices, float]
 """Keys first · n_right + second of near pairs, and which share of all candidates has been looked at."""
 
@@ -78,6 +81,22 @@ def squared_distance(left: Floats, right: Floats) -> Floats:
     total: Floats = difference[0] + difference[1]
     total += difference[2]
     return total
+
+
+def pair_squares(position: Floats, first: Indices, second: Indices) -> Floats:
+    """Return d² of pairs of atoms, in stretches, so that no more than the result is held for long.
+
+    Args:
+        position: atom centres [length], (3, n_atoms).
+        first: one atom of each pair, (n_pairs,).
+        second: the other, (n_pairs,).
+    """
+    squares = np.empty(first.size)
+    for start in range(0, first.size, STRETCH):
+        pairs = slice(start, start + STRETCH)
+        ends = (np.take(position, atoms[pairs], axis=1) for atoms in (first, second))
+        squares[pairs] = squared_distance(*ends)
+    return squares
 
 
 def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Found]:

@@ -5,11 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.collisions import CONTACT_SQUARED, NearList
-from atomsim.core.model import BondTable, Floats, Indices, Model, Observables, State
-from atomsim.core.near import squared_distance
-
-STRETCH = 1 << 18
-"""So many pairs are measured at a time: a few megabytes per array."""
+from atomsim.core.model import BondTable, Floats, Model, Observables, State
+from atomsim.core.near import STRETCH, pair_squares
 
 
 class Observer:
@@ -40,7 +37,7 @@ class Observer:
         self._near.update(position)
         collisions, contacts = 0.0, 0
         for first, second in self._near.pairs:
-            squared = _squared(position, first, second)
+            squared = pair_squares(position, first, second)
             squared = squared[squared < CONTACT_SQUARED]
             contacts += squared.size
             collisions += float(contact_potential(squared).sum())
@@ -68,14 +65,9 @@ class _Bonds:
     def energy(self, position: Floats) -> float:
         """Return Σ U."""
         return sum(
-            float(_potential(_squared(position, first, second), rest_squared, divisor).sum())
+            float(_potential(pair_squares(position, first, second), rest_squared, divisor).sum())
             for first, second, rest_squared, divisor in self._stretches
         )
-
-
-def _squared(position: Floats, first: Indices, second: Indices) -> Floats:
-    """Return d² of pairs; `take` gathers twice as fast as an index does."""
-    return squared_distance(np.take(position, first, axis=1), np.take(position, second, axis=1))
 
 
 def contact_potential(squared: Floats) -> Floats:

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from atomsim.errors import InputError
 from atomsim.drawing.camera import CLOSEST_EYE, EYE_DISTANCE, Camera, View, cross, dot, is_before_eye, outline
+from atomsim.errors import InputError
 
 ANGLES = list(itertools.product((0.0, 30.0, -90.0, 200.0, 1e6), (0.0, 20.0, 90.0, -35.0), "xyz"))
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from atomsim.errors import InputError, RunError
 from atomsim.drawing.files import check_target, write_whole
+from atomsim.errors import InputError, RunError
 
 
 @pytest.mark.parametrize(
