@@ -7,13 +7,24 @@ from collections.abc import Iterator
 import numpy as np
 
 from atomsim.core.collisions import CONTACT_SQUARED, table_pairs_near
+from atomsim.core.energy import SLACK, EnergyBudget, total_energy
 from atomsim.core.forces import prepare_forces
-from atomsim.core.model import Floats, Indices, Model, Origin, State, atom_name
+from atomsim.core.model import Floats, Frame, Indices, Model, Origin, State, atom_name
 from atomsim.core.near import squared_distance
 from atomsim.core.stiffness import largest_time_step
 
 FLOWN_APART = 1e6
 """An atom that moves further than this in one round [length] is no longer part of anything."""
+
+
+def loss(frame: Frame, model: Model, budget: EnergyBudget) -> str | None:
+    """Return what is wrong with the fastest atom of a frame, or None while the run is sound."""
+    if not is_sound(model, frame.state):
+        return "flew off"
+    energy, explained = total_energy(frame.observables), budget.at(frame.round_index)
+    if energy <= explained:
+        return None
+    return f"is the fastest, and the energy is {energy:.3g}, where the scene accounts for {explained / SLACK:.3g}"
 
 
 def is_sound(model: Model, state: State) -> bool:
@@ -23,7 +34,7 @@ def is_sound(model: Model, state: State) -> bool:
     return bool(fastest <= FLOWN_APART) and bool(np.isfinite(state.position).all())
 
 
-def explain(model: Model, first: State, before: State, after: State) -> str:
+def explain(model: Model, first: State, before: State, after: State, lost: str = "flew off") -> str:
     """Say what happened in the round from a sound state to one that is not.
 
     Args:
@@ -31,6 +42,7 @@ def explain(model: Model, first: State, before: State, after: State) -> str:
         first: where the run began.
         before: the last sound state.
         after: the state one round later.
+        lost: what is wrong with its fastest atom.
 
     Returns:
         A few lines: round, atom and group; the declaration that pushed it hardest, and against which atom; the largest
@@ -39,20 +51,26 @@ def explain(model: Model, first: State, before: State, after: State) -> str:
     with np.errstate(all="ignore"):
         atom = _first_lost(after)
         size, origin, partner = max(_pushes(model, before, atom), key=lambda push: push[0], default=(0.0, None, None))
-        limit = min(largest_time_step(model, state) for state in (first, before))
-    lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} flew off"]
+        limits = [largest_time_step(model, state) for state in (first, before)]
+    lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} {lost}"]
     if origin is not None:
         against = f", against {atom_name(partner, model.groups)}" if partner is not None else ""
         lines.append(f"  pushed hardest by {origin}{against}, with an impulse of {size:.3g} in one round")
-    if model.time_step >= limit:
-        lines.append(f"  time_step is {model.time_step:g}; the stiffness of the scene allows less than {limit:.3g}")
-        lines.append("  remedy: a smaller time_step, fewer bonds per atom, or damping")
-    else:
-        lines.append(
-            f"  time_step {model.time_step:g} is below {limit:.3g}, the limit of the stiffness: look at speeds"
-        )
-        lines.append("  remedy: weaker external forces, lower velocities, or a smaller time_step")
-    return "\n".join(lines)
+    return "\n".join([*lines, *_remedy(model.time_step, *limits)])
+
+
+def _remedy(time_step: float, at_first: float, just_before: float) -> list[str]:
+    """Compare the time step with what the stiffness allowed at first and just before, and say what to change."""
+    if time_step >= min(at_first, just_before):
+        when, limit = ("of the scene", at_first) if time_step >= at_first else ("it had by then", just_before)
+        return [
+            f"  time_step is {time_step:g}; the stiffness {when} allows less than {limit:.3g}",
+            "  remedy: a smaller time_step, fewer bonds per atom, or damping",
+        ]
+    return [
+        f"  time_step {time_step:g} is below {just_before:.3g}, the limit of the stiffness: look at speeds",
+        "  remedy: weaker external forces, lower velocities, or a smaller time_step",
+    ]
 
 
 def _first_lost(state: State) -> int:

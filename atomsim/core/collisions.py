@@ -89,8 +89,14 @@ def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> 
         table: the declared collisions.
         position: atom centres [length], (3, n_atoms).
         cutoff: distance below which a pair is near [length].
+
+    Raises:
+        MemoryError: so many pairs are near that they do not fit.
     """
-    found = [_block_pairs_near(block, position, cutoff) for block in table.blocks]
+    try:
+        found = [_block_pairs_near(block, position, cutoff) for block in table.blocks]
+    except MemoryError as error:
+        raise MemoryError(f"{table.origin}: {error}") from None
     if len(table.blocks) == 1 and isinstance(table.blocks[0], Within):
         return found[0]  # sorted as it is
     n_atoms = position.shape[1]

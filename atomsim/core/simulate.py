@@ -6,8 +6,9 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
-from atomsim.core.blowup import explain, is_sound
+from atomsim.core.blowup import explain, loss
 from atomsim.core.digest import state_digest
+from atomsim.core.energy import EnergyBudget
 from atomsim.core.model import Frame, Model, State
 from atomsim.core.observables import Observer
 from atomsim.core.stepper import NumpyStepper
@@ -55,21 +56,25 @@ def simulate(
         Frames in order of rounds.
 
     Raises:
-        BlowUpError: a number left the finite or an atom flew off; all frames before have been yielded.
+        BlowUpError: a number left the finite, an atom flew off, or energy came from nowhere; all frames before have
+            been yielded.
     """
     observer = Observer(model)
     first = first or state
+    budget = EnergyBudget(model, first, observer.observe(first))
     stepper = make_stepper(model, state)
-    yield frame_of(model, state, observer)
+    frame = frame_of(model, state, observer)
+    yield frame
     if report is not None:
         report(state.round_index)
     while state.round_index < rounds:
         next_round = min(rounds, (state.round_index // record_every + 1) * record_every)
         _advance(stepper, state.round_index, next_round, report)
         before, state = state, stepper.state()
-        if not is_sound(model, state):
-            raise _blow_up(model, first, before, make_stepper)
-        yield frame_of(model, state, observer)
+        frame = frame_of(model, state, observer)
+        if loss(frame, model, budget):
+            raise _blow_up(model, first, budget, before, make_stepper)
+        yield frame
 
 
 def _advance(stepper: Stepper, round_index: int, stop: int, report: Callable[[int], None] | None) -> None:
@@ -97,12 +102,13 @@ def frame_of(model: Model, state: State, observer: Observer) -> Frame:
     )
 
 
-def _blow_up(model: Model, first: State, sound: State, make_stepper: MakeStepper) -> BlowUpError:
+def _blow_up(model: Model, first: State, budget: EnergyBudget, sound: State, make_stepper: MakeStepper) -> BlowUpError:
     """Go through the rounds since the last sound frame again, one by one, to find where it happened."""
-    stepper = make_stepper(model, sound)
+    stepper, observer = make_stepper(model, sound), Observer(model)
     while True:
         stepper.advance(1)
         state = stepper.state()
-        if not is_sound(model, state):
-            return BlowUpError(explain(model, first, sound, state))
+        lost = loss(frame_of(model, state, observer), model, budget)
+        if lost:
+            return BlowUpError(explain(model, first, sound, state, lost))
         sound = state

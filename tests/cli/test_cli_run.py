@@ -19,8 +19,9 @@ def test_run_says_what_it_did_and_what_to_type_next(cli):
     assert result.err == ""
     lines = text(result.out).splitlines()
     assert re.fullmatch(r"out\.h5: 20 rounds in # s \(# rounds/s\), [\d.]+ kB", lines[0])
-    assert re.fullmatch(r"digest of round 20: [0-9a-f]{64}", lines[1])
-    assert lines[2:] == ["next: atomsim render out.h5"]
+    assert lines[1] == "computed by numpy, 1 thread (the run is short)"
+    assert re.fullmatch(r"digest of round 20: [0-9a-f]{64}", lines[2])
+    assert lines[3:] == ["next: atomsim render out.h5"]
 
 
 def test_quiet_prints_nothing(cli):
@@ -100,16 +101,17 @@ def test_a_blow_up_is_explained_and_keeps_the_frames_before(cli):
     assert result.err == (
         "warning: time_step 0.1 is at or above 0.0286, the largest that the stiffness of this scene allows; "
         "expect it to blow up; try time_step 0.01\n"
-        "the simulation blew up in round 22: left[67] (atom 67) flew off\n"
-        "  pushed hardest by bonds.left (scenes/rods.yaml:23), against left[64] (atom 64), "
-        "with an impulse of 8.6e+05 in one round\n"
+        "the simulation blew up in round 15: left[69] (atom 69) is the fastest, and the energy is 1.61e+05, "
+        "where the scene accounts for 70.1\n"
+        "  pushed hardest by bonds.left (scenes/rods.yaml:23), against left[2] (atom 2), "
+        "with an impulse of 0.911 in one round\n"
         "  time_step is 0.1; the stiffness of the scene allows less than 0.0286\n"
         "  remedy: a smaller time_step, fewer bonds per atom, or damping\n"
-        "out.h5 keeps the frames up to round 20\n"
+        "out.h5 keeps the frames up to round 10\n"
     )
     shown = cli("show", "out.h5")
     assert shown.code == 0
-    assert "  frames     3, round 0 to 20 of 400\n  time step  τ = 0.1\n  ended      blew up: the sim" in shown.out
+    assert "  frames     2, round 0 to 10 of 400\n  time step  τ = 0.1\n  ended      blew up: the sim" in shown.out
     assert cli("render", "out.h5", "--size", "64x48").code == 0
 
 
