@@ -15,11 +15,12 @@ from atomsim.core.forecast import forecast
 from atomsim.core.memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
+from atomsim.core.speed import SpeedWatch
 from atomsim.errors import BlowUpError, InputError, RunError
 from atomsim.inside import compile_inside
 from atomsim.scene import LoadedScene
 from atomsim.scene.difference import differences
-from atomsim.trajectory import End, Header, Recorder, trajectory_bytes
+from atomsim.trajectory import End, Header, Recorder, check_target, trajectory_bytes
 
 Report: TypeAlias = Callable[[int, int], None]
 """Called with the round reached and the round to reach, at the start and then several times a second."""
@@ -41,6 +42,7 @@ class Outcome:
         digest: the state digest of the last frame.
         end: whether it finished or was interrupted.
         backend: what computed it, and why that.
+        warning: what may have gone wrong unseen, or None.
     """
 
     path: Path
@@ -50,6 +52,7 @@ class Outcome:
     digest: str
     end: End
     backend: Backend
+    warning: str | None
 
 
 def run(
@@ -83,8 +86,8 @@ def run(
         RunError: it cannot be written.
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
+    check_target(path, replace=replace)  # before anything that takes long
     model, state = compile_scene(scene.scene, scene.source)
-    chosen = choose(backend, threads, model, rounds or scene.scene.rounds)
     if warn is not None:
         for warning in forecast(model, state):
             warn(warning)
@@ -98,7 +101,8 @@ def run(
         compress=compress,
     )
     _require_disk(Path(path), header)
-    with Recorder(Path(path), header, replace=replace) as recorder:
+    chosen = choose(backend, threads, model, header.rounds)
+    with Recorder(path, header, replace=replace) as recorder:
         return _record(recorder, model, state, chosen, report)
 
 
@@ -187,6 +191,7 @@ def _record(recorder: Recorder, model: Model, first: State, backend: Backend, re
     first_round = state.round_index
     end, blow_up = End("finished"), None
     digest = ""
+    watch = SpeedWatch(model)
 
     def report_round(round_index: int) -> None:
         if report is not None:
@@ -199,6 +204,7 @@ def _record(recorder: Recorder, model: Model, first: State, backend: Backend, re
             if not is_recorded:
                 recorder.append(frame)
             is_recorded = False
+            watch.see(frame)
             state, digest = frame.state, frame.digest
     except StopWishedError:
         end = End("interrupted")
@@ -207,4 +213,4 @@ def _record(recorder: Recorder, model: Model, first: State, backend: Backend, re
     recorder.finish(end)
     if blow_up is not None:
         raise BlowUpError(f"{blow_up}\n{recorder.path} keeps the frames up to round {state.round_index}")
-    return Outcome(recorder.path, header.rounds, first_round, state.round_index, digest, end, backend)
+    return Outcome(recorder.path, header.rounds, first_round, state.round_index, digest, end, backend, watch.warning())

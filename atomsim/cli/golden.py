@@ -38,7 +38,11 @@ def record(
     from atomsim.errors import InputError, RunError
     from atomsim.golden import LOG, golden_path, record_golden, write_golden
 
-    existing = [golden_path(scene, into) for scene in scenes if golden_path(scene, into).exists()]
+    paths = [golden_path(scene, into) for scene in scenes]
+    twice = next((path for number, path in enumerate(paths) if path in paths[:number]), None)
+    if twice is not None:
+        raise InputError(f"two of these scenes would share the golden {twice}; record them into different folders")
+    existing = [path for path in paths if path.exists()]
     if existing and not reason.strip():
         raise InputError(f"{existing[0]} exists; say why it changes with --reason")
     try:

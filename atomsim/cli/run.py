@@ -81,6 +81,8 @@ def run(
                 report=report,
                 warn=None if quiet else _warn,
             )
+    if outcome.warning is not None and not quiet:
+        _warn(outcome.warning)
     if wish.signal_number is not None and outcome.end.kind == "interrupted":
         tell(f"stopped after round {outcome.last_round} of {outcome.rounds}; {_to_go_on(outcome.path)}")
         raise typer.Exit(128 + wish.signal_number)

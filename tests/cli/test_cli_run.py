@@ -155,6 +155,33 @@ def test_help_of_each_command_shows_an_example(cli, command):
     assert "Example" in result.out
 
 
+FALL = """
+atomsim: 1
+time_step: 0.05
+rounds: 40
+record_every: 5
+groups:
+  floor: {shape: plane, counts: [3, 3], step_x: [1, 0, 0], step_y: [0, 1, 0]}
+  brick: {shape: atoms, positions: [[0, 0, 30]]}
+collisions: {touch: {between: [floor, brick]}}
+forces:
+  weight: {kind: gravity, acts_on: brick, impulse: [0, 0, -9.81]}
+  ground: {kind: hold, acts_on: floor}
+"""
+
+
+def test_atoms_that_grew_too_fast_are_told_of_at_the_end(cli):
+    Path("fall.yaml").write_text(FALL)
+    result = cli("run", "fall.yaml")
+    assert result.code == 0
+    assert result.err == (
+        "warning: from round 5 on atoms that may collide moved up to 19.6 per round, so some may have passed through "
+        "others unseen (contact is at distance 2); use a smaller time_step or weaker impulses\n"
+    )
+    Path("slow.yaml").write_text(FALL.replace("-9.81", "-0.001"))
+    assert cli("run", "slow.yaml", "-o", "slow.h5").err == ""
+
+
 def test_render_replaces_only_pictures_of_its_own(cli):
     assert cli("run", "scenes/threads.yaml", "--rounds", "20").code == 0
     assert cli("render", "out.h5", "--size", "64x48").out == "out.png\n"

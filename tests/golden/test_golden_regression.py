@@ -95,6 +95,19 @@ def test_recording_again_asks_for_a_reason_and_logs_it(cli, tmp_path):
     assert cli("golden", "check", scene, "--into", folder)[0] == 0
 
 
+def test_two_scenes_of_one_name_do_not_share_a_golden(cli, tmp_path):
+    scene = ROOT / "scenes" / "threads.yaml"
+    shutil.copy(ROOT / "scenes" / "rods.yaml", tmp_path)
+    shutil.copy(scene, tmp_path)
+    code, out, err = cli("golden", "record", scene, tmp_path / "threads.yaml", "--into", tmp_path / "g")
+    assert (code, out) == (2, "")
+    assert err == (
+        f"two of these scenes would share the golden {tmp_path / 'g' / 'threads.golden.json'}; "
+        "record them into different folders\n"
+    )
+    assert not (tmp_path / "g").exists()
+
+
 @pytest.mark.parametrize("damage", ["", "{}", "[]", '{"golden": 2}', "\x00\xff"])
 def test_a_damaged_golden_is_no_golden(cli, tmp_path, damage):
     (tmp_path / "threads.golden.json").write_text(damage, encoding="latin-1")
