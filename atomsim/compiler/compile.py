@@ -160,7 +160,8 @@ class _Compiler:
             self._complain_of_selection(path, collisions, error)
             return None
         if not n_collision_pairs(table):
-            self._complain(path, "nothing can collide: there are no two different atoms here")
+            key, why = _why_nothing_collides(table)
+            self._complain((*path, *key), f"nothing can collide: {why}")
             return None
         first, second = coincident_pairs(self._placed, table)
         return None if self._found_coincident(path, first, second, "set to collide") else table
@@ -321,6 +322,14 @@ def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
     uniform = random.Random(jitter.seed).random  # its stream is guaranteed to stay the same
     noise = np.array([2.0 * uniform() - 1.0 for _ in range(position.size)])
     return position + jitter.amplitude * noise.reshape(position.shape)
+
+
+def _why_nothing_collides(table: CollisionTable) -> tuple[Path, str]:
+    """Return the key to blame for a table without pairs, and the reason."""
+    gaps = [block.min_gap for block in table.blocks if isinstance(block, Within) and block.atoms.size > 1]
+    if gaps:
+        return ("min_gap",), f"no two atoms here are {gaps[0]} or more places apart"
+    return (), "there are no two different atoms here"
 
 
 def _parts(key: str) -> Path:

@@ -7,10 +7,13 @@ import math
 import numpy as np
 
 from atomsim.core.collisions import table_pairs_near
-from atomsim.core.model import Between, CollisionTable, Indices, Model, State, atom_name
+from atomsim.core.model import Between, CollisionTable, Indices, Model, State, TorqueForce, Within, atom_name
 from atomsim.core.near import squared_distance
 from atomsim.core.observables import contact_potential
 from atomsim.core.stiffness import is_surely_stable, largest_time_step
+
+SHORTEST_LEVER = 1e-6
+"""Atoms nearer than this to the axis of a torque lie on it [length]: what is left is rounding, or jitter."""
 
 
 def forecast(model: Model, state: State) -> list[str]:
@@ -21,7 +24,12 @@ def forecast(model: Model, state: State) -> list[str]:
         state: where the run begins.
     """
     with np.errstate(all="ignore"):  # infinite is a fair answer to absurd numbers
-        return [*_instability(model, state), *_tunnelling(model, state), *_overlaps(model, state)]
+        return [
+            *_instability(model, state),
+            *_tunnelling(model, state),
+            *_overlaps(model, state),
+            *_idle_torques(model, state),
+        ]
 
 
 def _instability(model: Model, state: State) -> list[str]:
@@ -64,10 +72,43 @@ def _overlaps(model: Model, state: State) -> list[str]:
             deepest = int(squared.argmin())
             energy = float(contact_potential(squared).sum()) / model.time_step
             one, other = (atom_name(int(atoms[deepest]), model.groups) for atoms in (first, second))
+            overlap = "1 pair overlaps" if first.size == 1 else f"{first.size} pairs overlap"
             warnings.append(
-                f"{table.origin}: {first.size} pairs overlap at the start, most {one} and {other} "
-                f"{np.sqrt(squared[deepest]):.3g} apart (contact is at 2); that releases the energy {energy:.3g}"
+                f"{table.origin}: {overlap} at the start, most {one} and {other} "
+                f"{np.sqrt(squared[deepest]):.3g} apart (contact is at 2); that releases the energy {energy:.3g}; "
+                f"move them apart, or leave them out {_without(table, first, second)}"
             )
+    return warnings
+
+
+def _without(table: CollisionTable, first: Indices, second: Indices) -> str:
+    """Say how to leave pairs out of a table: by the `min_gap` just above theirs, where it leaves any pair at all."""
+    blocks = [block for block in table.blocks if isinstance(block, Within)]
+    min_gap = 1 + max((_widest_gap(block.atoms, first, second) for block in blocks), default=0)
+    if len(blocks) == len(table.blocks) and any(block.atoms.size > min_gap for block in blocks):
+        return f"with `min_gap: {min_gap}`"
+    return "of the collision"
+
+
+def _widest_gap(atoms: Indices, first: Indices, second: Indices) -> int:
+    """Return how many places of a selection lie between the two atoms of a pair, at most; 0 if it holds no pair."""
+    inside = np.isin(first, atoms) & np.isin(second, atoms)
+    gap = np.searchsorted(atoms, second[inside]) - np.searchsorted(atoms, first[inside])
+    return int(gap.max(initial=0))
+
+
+def _idle_torques(model: Model, state: State) -> list[str]:
+    """A torque needs a lever: atoms off its axis."""
+    warnings = []
+    for force in model.forces:
+        if isinstance(force, TorqueForce) and force.magnitude != 0.0:
+            centre = state.position[force.about].mean(axis=0)
+            lever = np.cross(force.axis, state.position[force.atoms] - centre)
+            if np.abs(lever).max() < SHORTEST_LEVER:
+                warnings.append(
+                    f"{force.origin}: all its atoms lie on the axis, where a torque does nothing, or, a hair beside "
+                    "it, throws them away; choose another `axis` or `about`"
+                )
     return warnings
 
 

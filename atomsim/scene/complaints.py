@@ -10,12 +10,12 @@ from pydantic_core import ErrorDetails
 
 from atomsim.errors import Problem
 from atomsim.scene.css_colors import CSS_COLORS
-from atomsim.scene.field_docs import declaration_at, descriptions, discriminator, words_in
+from atomsim.scene.field_docs import declaration_at, declared_in, descriptions, discriminator, words_in
 from atomsim.scene.overrides import is_setting
-from atomsim.scene.scalars import resolve
+from atomsim.scene.scalars import is_number
 from atomsim.scene.schema import field_docs
 from atomsim.scene.source import Path, Source
-from atomsim.scene.wording import either, meant, readable, shown, suggestion
+from atomsim.scene.wording import NEEDS_BRACKETS, either, meant, readable, shown, suggestion
 
 _TAGGED_SECTIONS = {"groups": "shape", "bonds": "rule", "forces": "kind"}
 """Sections whose declarations are chosen by a key; pydantic puts its word into paths: (groups, hoop, *ring*, count)."""
@@ -55,14 +55,16 @@ def _complaint(found: ErrorDetails, data: Any, source: Source) -> Problem:
         case "extra_forbidden":
             message = _unknown_key(path, data, source)
         case "model_type" | "model_attributes_type" | "dict_type":
-            message = f"needs a mapping {_keys(path, data)} (got {shown(value)})"
+            message = f"needs a mapping {_keys(path, data)} (got {shown(value)}{_indentation(path)})"
         case "name":
             message = f"{found['msg']} (got {shown(path[-1])})"
+        case "one_of":
+            message = found["msg"] + _misnamed(path, data, source)
         case kind if kind in _SAYS_ALL:
             message = found["msg"]
         case kind:
             needs = _NEEDS[kind].format(**_context(found)) if kind in _NEEDS else found["msg"]
-            message = f"{needs} (got {shown(value)}{_hint(kind, value)})"
+            message = f"{needs} (got {shown(value)}{_hint(kind, path, value)})"
     return source.problem(path, message)
 
 
@@ -75,7 +77,7 @@ def _context(found: ErrorDetails) -> dict[str, Any]:
     return context
 
 
-_SAYS_ALL = ("one_of", "min_gap", "push_rounds", "zero_axis", "selection_syntax")
+_SAYS_ALL = ("min_gap", "push_rounds", "zero_axis", "selection_syntax")
 """Findings of the language itself that say in their own words what they got."""
 
 _NEEDS = {
@@ -143,17 +145,28 @@ def _unknown_key(path: Path, data: Any, source: Source) -> str:
     before_colon = key.partition(":")[0].strip()
     if ":" in key and before_colon in keys:
         return f"{message}write `{before_colon}: ` with a space after the colon"
-    mark, reopened = source.mark(path), source.mark(path[:-1])
-    if mark.file != reopened.file and not is_setting(mark):
-        return f"{message}to drop what is extended, write `{readable(key)}: null` in {reopened.file}"
+    if is_number(key) and _value(path, data) is None:
+        return message + NEEDS_BRACKETS
     chosen = discriminator(declaration) if declaration is not None else None
+    owners = [other for other, fields in words_in(str(path[0])).items() if key in fields] if chosen is not None else []
+    mark, reopened = source.mark(path), source.mark(path[:-1])
+    if mark.file != reopened.file and not is_setting(mark) and (owners or suggestion(key, keys) is None):
+        return f"{message}to drop what is extended, write `{readable(key)}: null` in {reopened.file}"
     if chosen is None:
         return message + meant(key, keys, "the keys here are")
     kind, word = chosen
-    owners = [other for other, fields in words_in(str(path[0])).items() if key in fields]
     if owners:
         return f"{message}it belongs to {kind} {either(owners)}; the keys of {kind} {word} are {', '.join(keys)}"
     return message + meant(key, keys, f"the keys of {kind} {word} are")
+
+
+def _misnamed(path: Path, data: Any, source: Source) -> str:
+    """Say which declaration of another file was probably meant to be changed, where a name is new."""
+    here = source.mark(path).file
+    section = path[:-1]
+    inherited = [name for name in _value(section, data) if source.mark((*section, name)).file != here]
+    close = suggestion(str(path[-1]), inherited)
+    return f"; did you mean `{readable(close)}`?" if close is not None else ""
 
 
 def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) -> Problem:
@@ -162,7 +175,7 @@ def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) ->
     words = list(words_in(str(path[0])))
     declared = _value(path, data)
     if key not in declared:
-        return source.problem((*path, key), f"missing: {either(words)}")
+        return source.problem((*path, key), f"missing: {either(words)}{_misnamed(path, data, source)}")
     value = declared[key]
     if not isinstance(value, str):
         return source.problem((*path, key), f"needs {either(words)} (got {shown(value)})")
@@ -180,13 +193,23 @@ def _keys(path: Path, data: Any) -> str:
     return "of names, `name: …`"
 
 
-def _hint(kind: str, value: Any) -> str:
+def _indentation(path: Path) -> str:
+    """Say where a key belongs that stands where a name is expected."""
+    is_key = any(path[-1] in declaration.model_fields for declaration in declared_in(str(path[0])))
+    return "; indent it under the name" if len(path) == 2 and is_key else ""
+
+
+def _hint(kind: str, path: Path, value: Any) -> str:
     """Say how to write what was probably meant."""
+    if kind == "string_type" and len(path) == 1 and not isinstance(value, (dict, list)):
+        return f'; write "{shown(value)}"'
+    if kind == "version" and str(value) in ("1", "1.0"):
+        return "; remove the quotes" if value == "1" else "; write 1"
     if kind in ("float_type", "int_type") and isinstance(value, str):
-        if isinstance(resolve(value), (int, float)) and not isinstance(resolve(value), bool):
+        if is_number(value):
             return "; remove the quotes"
         plain = re.sub(r"^([-+]?)0+(?=[0-9])", r"\1", value.replace("_", "").replace(",", "."))
-        return f"; write {plain}" if plain != value and isinstance(resolve(plain), (int, float)) else ""
+        return f"; write {plain}" if plain != value and is_number(plain) else ""
     if kind == "int_type" and isinstance(value, float) and value.is_integer():
         return f"; write {int(value)}"
     if kind == "bool_type" and isinstance(value, str):

@@ -7,7 +7,7 @@ import functools
 import inspect
 import sys
 from collections.abc import Iterator
-from typing import Annotated, Any, get_args, get_origin
+from typing import Annotated, Any, TypeGuard, get_args, get_origin
 
 from atomsim.scene.language import Declaration, Scene
 from atomsim.scene.source import Path
@@ -49,13 +49,22 @@ def discriminator(declaration: type[Declaration]) -> tuple[str, str] | None:
     return None
 
 
+def declared_in(section: str) -> list[type[Declaration]]:
+    """Return what may be declared by name in a section; nothing for a section without names."""
+    annotation = Scene.model_fields[section].annotation
+    return _options(get_args(annotation)[1], None) if get_origin(annotation) is dict else []
+
+
 def words_in(section: str) -> dict[str, list[str]]:
     """Return the words that choose a declaration in a section (shapes, rules or kinds), each with its keys."""
-    declared = get_args(Scene.model_fields[section].annotation)[1]
-    chosen_by = {
-        discriminator(declaration): list(descriptions(declaration)) for declaration in _options(declared, None)
-    }
+    chosen_by = {discriminator(declaration): list(descriptions(declaration)) for declaration in declared_in(section)}
     return {chosen[1]: keys for chosen, keys in chosen_by.items() if chosen is not None}
+
+
+def is_mapping(declaration: type[Declaration], key: str) -> bool:
+    """Tell whether further keys or names stand below a key of a declaration, and nothing else may."""
+    options = _options(declaration.model_fields[key].annotation, [])
+    return any(get_origin(option) is dict or _is_declaration(option) for option in options)
 
 
 def declaration_at(path: Path, data: Any) -> type[Declaration] | None:
@@ -88,7 +97,7 @@ def _inside(annotation: Any, data: Any, part: str | int) -> Any:
 def _chosen(annotation: Any, data: Any) -> type[Declaration] | None:
     """Return the declaration among the options that the data name, or the only one."""
     options = _options(annotation, data)
-    classes = [option for option in options if isinstance(option, type) and issubclass(option, Declaration)]
+    classes = [option for option in options if _is_declaration(option)]
     if len(classes) == 1:
         return classes[0]
     for declaration in classes:
@@ -96,6 +105,10 @@ def _chosen(annotation: Any, data: Any) -> type[Declaration] | None:
         if _item(data, key) == word:
             return declaration
     return None
+
+
+def _is_declaration(option: Any) -> TypeGuard[type[Declaration]]:
+    return isinstance(option, type) and issubclass(option, Declaration)
 
 
 def _options(annotation: Any, data: Any) -> list[Any]:

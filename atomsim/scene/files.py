@@ -82,7 +82,7 @@ def _base_name(extends: Node, folder: str, chain: list[str]) -> str:
     if len(chain) == MAX_FILES:
         raise refused(f"goes through more than {MAX_FILES} files")
     if not target.exists():
-        raise refused(_no_such_file(base))
+        raise refused(_no_such_file(base, extends.value, f" (got {shown(extends.value)})"))
     if not target.is_file():
         raise refused(f"leads to something that is no file (got {shown(extends.plain())})")
     return base
@@ -133,20 +133,20 @@ def _reason(error: OSError | ValueError, name: str) -> str:
     if isinstance(error, PermissionError):
         return "the file may not be read (permission denied)"
     if isinstance(error, (FileNotFoundError, ValueError)):
-        return _no_such_file(name)
+        return _no_such_file(name, name)
     return f"the file cannot be read ({error.strerror})"
 
 
-def _no_such_file(name: str) -> str:
-    """Say that there is no such file, and which one may have been meant."""
+def _no_such_file(name: str, written: str, got: str = "") -> str:
+    """Say that there is no such file, and which one may have been meant, the way it was written."""
     path = Path(name)
     try:
-        neighbours = [entry.name for entry in path.parent.iterdir() if entry.suffix in (".yaml", ".yml")]
+        neighbours = {entry.stem: entry.name for entry in path.parent.iterdir() if entry.suffix in (".yaml", ".yml")}
     except (OSError, ValueError):
-        neighbours = []
-    close = suggestion(path.name, neighbours)
-    remedy = f"; did you mean `{printable(str(path.parent / close))}`?" if close is not None else ""
-    return f"there is no such file{remedy}"
+        neighbours = {}
+    close = suggestion(path.stem, neighbours)
+    remedy = f"; did you mean `{printable(str(Path(written).with_name(neighbours[close])))}`?" if close else ""
+    return f"there is no such file{got}{remedy}"
 
 
 def _unreadable(name: str, message: str) -> SceneError:

@@ -13,7 +13,7 @@ from atomsim.errors import Problem, SceneError
 from atomsim.scene.files import read_scene_file, read_scene_text
 from atomsim.scene.language import Scene
 from atomsim.scene.overrides import override
-from atomsim.scene.references import check_references
+from atomsim.scene.references import check_deletions, check_references
 from atomsim.scene.source import Source
 from atomsim.scene.tree import Node, Places, without_nulls
 from atomsim.scene.wording import printable
@@ -72,7 +72,7 @@ def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
     data = root.plain()
     source = Source(name=name, overrides=overrides, marks=Places(root))
     present = without_nulls(data)
-    problems = check_references(present, source)
+    problems = [*check_deletions(root), *check_references(present, source)]
     scene = _validated(data, source, problems)
     if problems or scene is None:
         raise SceneError(_in_order(problems, source))

@@ -1,14 +1,15 @@
-"""Settings of the command line, `PATH=VALUE`, laid over a scene; knows the tree and no language."""
+"""Settings of the command line, `PATH=VALUE`, laid over a scene; knows the tree, of the language only its mappings."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable
 
 from atomsim.errors import Mark, Problem, SceneError
 from atomsim.scene.source import Path, dotted
 from atomsim.scene.strict_yaml import read_yaml
 from atomsim.scene.tree import Node
-from atomsim.scene.wording import meant, readable, shown
+from atomsim.scene.wording import meant, readable, shown, suggestion
 
 _FILE = "--set "
 
@@ -24,7 +25,8 @@ def override(root: Node, settings: Iterable[str]) -> Node:
     Args:
         root: the tree of a scene.
         settings: each `PATH=VALUE`, PATH dotted (`forces.weight.impulse.2`), VALUE strict YAML. The value replaces
-            what stands there; a new key may be made in a mapping that exists; null deletes a key that exists.
+            what stands there; a new key may be made in a mapping that exists, or that the language has and the scene
+            does not write (`render`, `render.camera`, `jitter`); null deletes a key that exists.
 
     Returns:
         A new tree, in which the values are marked with their setting.
@@ -34,9 +36,8 @@ def override(root: Node, settings: Iterable[str]) -> Node:
     """
     problems: list[Problem] = []
     for setting in settings:
-        mark = Mark(_FILE + readable(setting), 0, 0)
         try:
-            root = _apply(root, setting, mark)
+            root = _Setting(root, setting).applied()
         except SceneError as error:
             problems.extend(error.problems)
     if problems:
@@ -44,58 +45,81 @@ def override(root: Node, settings: Iterable[str]) -> Node:
     return root
 
 
-def _apply(root: Node, setting: str, mark: Mark) -> Node:
-    path, equals, value = setting.partition("=")
-    if not equals:
-        raise _refused(mark, (), "a setting is PATH=VALUE; the `=` is missing")
-    parts = tuple(path.strip().split("."))
-    if not all(parts):
-        raise _refused(mark, (), "a path is keys and indices with a dot between two, like `forces.weight.impulse.2`")
-    if parts[0] == "extends":
-        raise _refused(mark, parts, "only a scene file can extend another")
-    node = read_yaml(value, lambda line, column: mark, parts)
-    return _set(root, (), parts, node)
+class _Setting:
+    """One setting on its way into a tree."""
 
+    def __init__(self, root: Node, setting: str) -> None:
+        self._root = root
+        self._mark = Mark(_FILE + readable(setting), 0, 0)
+        path, equals, value = setting.partition("=")
+        if not equals:
+            raise self._refused((), "a setting is PATH=VALUE; the `=` is missing")
+        self._parts = tuple(path.strip().split("."))
+        if not all(self._parts):
+            raise self._refused((), "a path is keys and indices with a dot between two, like `forces.weight.impulse.2`")
+        if self._parts[0] == "extends":
+            raise self._refused(self._parts, "only a scene file can extend another")
+        if value.lstrip().startswith("#"):
+            quoted = shlex.quote(f"{path.strip()}={shown(value.strip())}")
+            raise self._refused(self._parts, f"`#` begins a comment; put the value in quotes: --set {readable(quoted)}")
+        self._node = read_yaml(value, lambda line, column: self._mark, self._parts)
 
-def _set(at: Node, done: Path, rest: tuple[str, ...], node: Node) -> Node:
-    """Return a copy of the value at the path `done` in which `rest` leads to the node."""
-    key, *deeper = rest
-    if isinstance(at.value, dict):
-        return Node(_set_key(at.value, (*done, key), tuple(deeper), node), at.mark)
-    if isinstance(at.value, list):
-        index = _index(key, len(at.value), done, node.mark)
-        item = _set(at.value[index], (*done, index), tuple(deeper), node) if deeper else node
-        return Node([*at.value[:index], item, *at.value[index + 1 :]], at.mark)
-    raise _refused(node.mark, (*done, key), f"`{dotted(done)}` is {shown(at.value)}; there is nothing inside")
+    def applied(self) -> Node:
+        """Return a tree in which the path leads to the value."""
+        return self._set(self._root, (), self._parts)
 
+    def _set(self, at: Node, done: Path, rest: tuple[str, ...]) -> Node:
+        """Return a copy of the value at the path `done` in which `rest` leads to the new value."""
+        key, *deeper = rest
+        if isinstance(at.value, dict):
+            return Node(self._set_key(at.value, (*done, key), tuple(deeper)), at.mark)
+        if isinstance(at.value, list):
+            index = self._index(key, len(at.value), done)
+            item = self._set(at.value[index], (*done, index), tuple(deeper)) if deeper else self._node
+            return Node([*at.value[:index], item, *at.value[index + 1 :]], at.mark)
+        raise self._refused((*done, key), f"`{dotted(done)}` is {shown(at.value)}; there is nothing inside")
 
-def _set_key(entries: dict[str, Node], path: Path, deeper: tuple[str, ...], node: Node) -> dict[str, Node]:
-    key = str(path[-1])
-    known = entries.get(key)
-    exists = known is not None and known.value is not None
-    if exists and known is not None and deeper:
-        return {**entries, key: _set(known, path, deeper, node)}
-    if not exists and (deeper or node.value is None):
-        raise _refused(node.mark, path, _nothing_there(entries, path, deeper, node))
-    kept = {name: entry for name, entry in entries.items() if exists or name != key}
-    return {**kept, key: node if node.value is not None else node.deleting()}
+    def _set_key(self, entries: dict[str, Node], path: Path, deeper: tuple[str, ...]) -> dict[str, Node]:
+        key = str(path[-1])
+        known = entries.get(key)
+        if known is not None and known.value is not None:
+            if deeper:
+                return {**entries, key: self._set(known, path, deeper)}
+            return {**entries, key: self._node if self._node.value is not None else self._node.deleting()}
+        if self._node.value is None:
+            present = [name for name, entry in entries.items() if entry.value is not None]
+            raise self._not_there(path, meant(key, present, "there are") if present else "nothing is declared here")
+        kept = {name: entry for name, entry in entries.items() if name != key}
+        if not deeper:
+            return {**kept, key: self._node}
+        self._require_mapping(entries, path)
+        return {**kept, key: self._set(Node({}, self._mark), path, deeper)}
 
+    def _require_mapping(self, entries: dict[str, Node], path: Path) -> None:
+        """Refuse to go on into what is not written, unless the language has a mapping there."""
+        from atomsim.scene.field_docs import declaration_at, descriptions, is_mapping  # only a few settings
+        from atomsim.scene.schema import field_docs  # need them
 
-def _nothing_there(entries: dict[str, Node], path: Path, deeper: tuple[str, ...], node: Node) -> str:
-    present = [name for name, entry in entries.items() if entry.value is not None]
-    remedy = meant(str(path[-1]), present, "there are") if present else "nothing is declared here"
-    if deeper and node.value is not None and not remedy.endswith("?"):
-        whole = "".join(f"{{{readable(part)}: " for part in deeper) + shown(node.plain()) + "}" * len(deeper)
-        remedy = f"make it whole with `{dotted(path)}={whole}`"
-    return f"there is no `{readable(str(path[-1]))}`; {remedy}"
+        key = str(path[-1])
+        declaration = declaration_at(path[:-1], self._root.plain())
+        if declaration is None:
+            close = suggestion(key, entries)
+            whole = f"make it whole with `{dotted(path)}={{…}}`"
+            raise self._not_there(path, whole if close is None else f"did you mean `{readable(close)}`?")
+        if key not in declaration.model_fields:
+            raise self._not_there(path, meant(key, descriptions(declaration), "the keys here are"))
+        if not is_mapping(declaration, key):
+            form = field_docs()[declaration.__name__][key].type
+            raise self._refused(path, f"`{key}` is not written; set it whole, as `{dotted(path)}={form}`")
 
+    def _index(self, key: str, n_items: int, done: Path) -> int:
+        if key.isascii() and key.isdecimal() and len(key) < 10 and int(key) < n_items:
+            return int(key)
+        indices = f"0 to {n_items - 1}" if n_items else "none, for it is empty"
+        raise self._refused((*done, key), f"`{dotted(done)}` is a list; its indices are {indices}")
 
-def _index(key: str, n_items: int, done: Path, mark: Mark) -> int:
-    if key.isascii() and key.isdecimal() and len(key) < 10 and int(key) < n_items:
-        return int(key)
-    indices = f"0 to {n_items - 1}" if n_items else "none, for it is empty"
-    raise _refused(mark, (*done, key), f"`{dotted(done)}` is a list; its indices are {indices}")
+    def _not_there(self, path: Path, remedy: str) -> SceneError:
+        return self._refused(path, f"there is no `{readable(str(path[-1]))}`; {remedy}")
 
-
-def _refused(mark: Mark, path: Path, message: str) -> SceneError:
-    return SceneError([Problem(mark, dotted(path), message)])
+    def _refused(self, path: Path, message: str) -> SceneError:
+        return SceneError([Problem(self._mark, dotted(path), message)])

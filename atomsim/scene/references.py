@@ -1,4 +1,4 @@
-"""Groups that a scene mentions but does not have; needs no atoms, so it is told before compiling."""
+"""Names that a scene mentions but does not have; needs no atoms, so it is told before compiling."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 from atomsim.errors import Problem
 from atomsim.scene.selection import SelectionSyntaxError, parse_selection
-from atomsim.scene.source import Path, Source
+from atomsim.scene.source import Path, Source, dotted
+from atomsim.scene.tree import Node
 from atomsim.scene.wording import meant, readable
 
 _SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
@@ -29,6 +30,25 @@ def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
         for path, name in [*_selected(data), *_colored(data)]
         if name not in groups and name != "all"
     ]
+
+
+def check_deletions(root: Node) -> list[Problem]:
+    """Find names that a scene deletes and what it extends does not have.
+
+    Args:
+        root: the merged tree of a scene; what is malformed is left to validation.
+    """
+    problems = []
+    for section in ("groups", "bonds", "collisions", "forces"):
+        named = root.child(section)
+        entries = named.value if named is not None and isinstance(named.value, dict) else {}
+        present = [name for name, node in entries.items() if node.value is not None]
+        for name, node in entries.items():
+            if node.deletes_nothing:
+                remedy = meant(name, present, f"the {section} are") if present else f"there are no {section}"
+                message = f"there is no `{readable(name)}` to delete; {remedy}"
+                problems.append(Problem(node.mark, dotted((section, name)), message))
+    return problems
 
 
 def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:

@@ -37,3 +37,9 @@ def resolve(text: str) -> str | int | float | bool | None:
     if _NOT_FINITE.fullmatch(text):
         return float(text.replace(".", ""))
     return text
+
+
+def is_number(text: str) -> bool:
+    """Return whether a plain scalar is a number."""
+    value = resolve(text)
+    return isinstance(value, (int, float)) and not isinstance(value, bool)

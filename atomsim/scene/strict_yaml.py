@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator
 import yaml
 
 from atomsim.errors import Mark, Problem, SceneError
-from atomsim.scene.scalars import resolve
+from atomsim.scene.scalars import is_number, resolve
 from atomsim.scene.source import Path, dotted
 from atomsim.scene.syntax_errors import explain
 from atomsim.scene.tree import Node
-from atomsim.scene.wording import readable
+from atomsim.scene.wording import NEEDS_BRACKETS, readable
 
 MAX_CHARACTERS = 2**24
 MAX_DEPTH = 32
@@ -128,7 +128,8 @@ class _Reader:
             if key in entries:
                 first = entries[key].mark.line
                 where = f", first on line {first}" if first else ""
-                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}")
+                remedy = f"; {NEEDS_BRACKETS}" if node.value is None and is_number(key) else ""
+                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}{remedy}")
             else:
                 entries[key] = Node(node.value, self._mark(event))
         return entries

@@ -17,16 +17,21 @@ class Node:
     """A value and its place; in a mapping, the place of its key. Nodes are never changed, so they may be shared.
 
     A node that `deletes` is the null that took the place of a value: it is no part of the scene any more, but a mistake
-    that it makes can still be reported at its place.
+    that it makes can still be reported at its place. A node that `deletes_nothing` is the null that took no place.
     """
 
     value: Scalar | dict[str, Node] | list[Node]
     mark: Mark
     deletes: bool = False
+    deletes_nothing: bool = False
 
     def deleting(self) -> Node:
         """Return the null, laid over a value."""
         return Node(None, self.mark, deletes=True)
+
+    def deleting_nothing(self) -> Node:
+        """Return the null, laid over nothing."""
+        return Node(None, self.mark, deletes_nothing=True)
 
     def child(self, part: str | int) -> Node | None:
         """Return the value under a key or an index, or None."""
@@ -45,20 +50,23 @@ class Node:
         return self.value
 
 
+_NOTHING = Node(None, Mark("", 0, 0))
+
+
 def merge(base: Node, top: Node) -> Node:
     """Lay one scene over another: mappings merge by key, everything else replaces.
 
     Keys of the base keep their order, new ones follow. A null deletes; what is declared again after it is new and comes
     last.
     """
-    if not isinstance(base.value, dict) or not isinstance(top.value, dict):
+    if not isinstance(top.value, dict):
         return top
-    merged = dict(base.value)
+    merged = dict(base.value) if isinstance(base.value, dict) else {}
     for key, node in top.value.items():
         known = merged.get(key)
         if known is None or known.value is None:
             merged.pop(key, None)
-            merged[key] = node
+            merged[key] = merge(_NOTHING, node) if node.value is not None else node.deleting_nothing()
         else:
             merged[key] = merge(known, node) if node.value is not None else node.deleting()
     return Node(merged, top.mark)

@@ -7,6 +7,9 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+NEEDS_BRACKETS = "a list needs brackets, such as [3, 0, 0]"
+"""What helps when `{step: 3, 0, 0}` was taken for keys without values."""
+
 _LONGEST = 60
 
 
@@ -35,11 +38,15 @@ def shown(value: Any) -> str:
 
 
 def suggestion(word: str, choices: Iterable[str]) -> str | None:
-    """Return the choice that was probably meant, if any comes close."""
+    """Return the choice that was probably meant, if any comes close: three of four letters.
+
+    >>> suggestion("laod", ["load", "brick"]), suggestion("spring", ["damping"])
+    ('load', None)
+    """
     import difflib  # only a mistake needs it
 
     by_lower_case = {choice.lower(): choice for choice in choices}
-    close = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower_case, n=1, cutoff=0.6)
+    close = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower_case, n=1, cutoff=0.75)
     return by_lower_case[close[0]] if close else None
 
 

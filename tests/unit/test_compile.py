@@ -106,12 +106,19 @@ def test_bonds_that_make_no_sense(bonds: dict[str, Any], message: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "collisions",
-    [{"within": "pair[0]"}, {"within": "pair", "min_gap": 2}, {"between": ["pair[0]", "pair[0]"]}],
+    ("collisions", "message"),
+    [
+        ({"within": "pair[0]"}, "c: nothing can collide: there are no two different atoms here"),
+        ({"within": "pair[0]", "min_gap": 2}, "c: nothing can collide: there are no two different atoms here"),
+        ({"between": ["pair[0]", "pair[0]"]}, "c: nothing can collide: there are no two different atoms here"),
+        (
+            {"within": ["pair[0]", "pair"], "min_gap": 7},
+            "c.min_gap: nothing can collide: no two atoms here are 7 or more places apart",
+        ),
+    ],
 )
-def test_collisions_of_no_two_atoms(collisions: dict[str, Any]) -> None:
-    message = "collisions.c: nothing can collide: there are no two different atoms here"
-    assert mistakes(PAIR, collisions={"c": collisions}) == [message]
+def test_collisions_of_no_two_atoms(collisions: dict[str, Any], message: str) -> None:
+    assert mistakes(PAIR, collisions={"c": collisions}) == [f"collisions.{message}"]
 
 
 def test_bound_atoms_at_the_same_place() -> None:

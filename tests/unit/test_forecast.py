@@ -60,9 +60,35 @@ def test_overlaps_at_the_start_tell_the_worst_pair_and_the_energy() -> None:
     groups = {"a": atoms_at((0, 0, 0), (1.9, 0, 0)), "b": atoms_at((0, 1, 0))}
     (warning,) = warnings(groups, 0.1, collisions={"c": {"among": ["a", "b"]}})
     assert warning == (
-        "collisions.c (<scene>:1): 1 pairs overlap at the start, most a[0] (atom 0) and b[0] (atom 2) 1 apart "
-        "(contact is at 2); that releases the energy 12.7"
+        "collisions.c (<scene>:1): 1 pair overlaps at the start, most a[0] (atom 0) and b[0] (atom 2) 1 apart "
+        "(contact is at 2); that releases the energy 12.7; move them apart, or leave them out of the collision"
     )
+
+
+def string(count: int, step: float) -> dict[str, Any]:
+    return {"shape": "string", "count": count, "step": [step, 0, 0]}
+
+
+@pytest.mark.parametrize(
+    ("groups", "within", "remedy"),
+    [
+        ({"a": string(5, 0.7)}, "a", "with `min_gap: 3`"),
+        ({"a": string(5, 0.7), "b": string(2, 9)}, ["b", "a"], "with `min_gap: 3`"),
+        ({"a": string(5, 0.7)}, "a[::2]", "with `min_gap: 2`"),
+        ({"a": string(5, 0.7)}, ["a[::2]", "a"], "with `min_gap: 3`"),
+        ({"a": string(3, 0.7)}, "a", "of the collision"),
+    ],
+)
+def test_the_smallest_gap_without_overlaps_is_named(
+    groups: dict[str, Any], within: str | list[str], remedy: str
+) -> None:
+    """Places 1 and 2 apart overlap, 3 apart do not; a gap that leaves no pair at all is no remedy."""
+    (warning,) = warnings(groups, 1e-3, collisions={"c": {"within": within}})
+    assert warning.endswith(f"; move them apart, or leave them out {remedy}")
+    if "min_gap" in remedy:
+        gap = int(remedy[-2])
+        assert warnings(groups, 1e-3, collisions={"c": {"within": within, "min_gap": gap}}) == []
+        assert len(warnings(groups, 1e-3, collisions={"c": {"within": within, "min_gap": gap - 1}})) == 1
 
 
 def test_touching_is_no_overlap() -> None:
@@ -82,6 +108,22 @@ def test_absurd_numbers_are_warned_of_in_finite_words() -> None:
         "time_step 1e+308 is at or above 0, the largest that the stiffness of this scene allows; expect it to blow up",
         "collisions.c (<scene>:1): atoms of a move inf per round, so two of them may pass through each other "
         "(contact is at distance 2)",
-        "collisions.c (<scene>:1): 1 pairs overlap at the start, most a[0] (atom 0) and a[1] (atom 1) 1e-150 apart "
-        "(contact is at 2); that releases the energy 1.38e-305",
+        "collisions.c (<scene>:1): 1 pair overlaps at the start, most a[0] (atom 0) and a[1] (atom 1) 1e-150 apart "
+        "(contact is at 2); that releases the energy 1.38e-305; "
+        "move them apart, or leave them out of the collision",
     ]
+
+
+def torque(groups: dict[str, Any], **keys: Any) -> list[str]:
+    return warnings(groups, 0.1, forces={"motor": {"kind": "torque", "axis": [1, 1, 1], "magnitude": 1, **keys}})
+
+
+def test_a_torque_on_atoms_on_its_axis() -> None:
+    """The numbers of the axis are rounded, so that the atoms are off it by a hair."""
+    axle = {"a": {"shape": "string", "count": 9, "step": [0.3, 0.3, 0.3]}}
+    assert torque(axle) == [
+        "forces.motor (<scene>:1): all its atoms lie on the axis, where a torque does nothing, or, a hair beside it, "
+        "throws them away; choose another `axis` or `about`"
+    ]
+    assert torque(axle, magnitude=0) == torque(axle, axis="x") == torque({**axle, "b": atoms_at((9, 0, 0))}) == []
+    assert torque({**axle, "b": atoms_at((9, 0, 0))}, acts_on="a", about="b") == []

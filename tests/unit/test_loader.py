@@ -184,6 +184,64 @@ def test_a_group_becomes_another_shape_by_deleting_the_keys_of_the_old_one(folde
     )
 
 
+def test_a_misspelt_key_of_the_base_is_a_misspelt_key(folder: Path) -> None:
+    write("base.yaml", GOOD.replace("atomsim: 1", "atomsim: 1\ntitel: x"))
+    write("top.yaml", "extends: base.yaml")
+    assert refusal("top.yaml") == "base.yaml:2:1: titel: unknown key `titel`; did you mean `title`?"
+
+
+def test_a_key_of_the_shape_before_is_no_misspelling(folder: Path) -> None:
+    write("base.yaml", GOOD.replace("string, count: 3, step: [1, 0, 0]", "block, counts: [1, 1, 1], spacing: 2"))
+    write("top.yaml", "extends: base.yaml\ngroups: {rod: {shape: ring, count: 3, radius: 3, spacing: null}}")
+    assert refusal("top.yaml") == (
+        "base.yaml:6:23: groups.rod.counts: unknown key `counts`; "
+        "to drop what is extended, write `counts: null` in top.yaml"
+    )
+
+
+def test_a_misspelt_name_in_a_scene_that_extends(folder: Path) -> None:
+    write("base.yaml", GOOD + "collisions: {grip: {within: ring}}\n")
+    write(
+        "top.yaml",
+        "extends: base.yaml\n"
+        "groups: {rign: {color: red}, new: {color: red}}\n"
+        "collisions: {gripp: {min_gap: 2}}\n"
+        "forces: {wieght: {impulse: [0, 0, 0]}}\n",
+    )
+    assert refusal("top.yaml").split("\n") == [
+        "top.yaml:2:10: groups.rign.shape: missing: string, ring, polygon, plane, block or atoms; did you mean `ring`?",
+        "top.yaml:2:30: groups.new.shape: missing: string, ring, polygon, plane, block or atoms",
+        "top.yaml:3:14: collisions.gripp: say exactly one of `within`, `between` or `among` (got none); "
+        "did you mean `grip`?",
+        "top.yaml:4:10: forces.wieght.kind: missing: "
+        "damping, gravity, push, hold, oscillate, torque or tether; did you mean `weight`?",
+    ]
+
+
+def test_a_null_that_deletes_no_name(folder: Path) -> None:
+    write(
+        "top.yaml",
+        "extends: base.yaml\ngroups: {rods: null, block: null}\nbonds:\n  glue:\nforces: {weight: null, wind: null}\n",
+    )
+    assert refusal("top.yaml").split("\n") == [
+        "top.yaml:2:10: groups.rods: there is no `rods` to delete; did you mean `rod`?",
+        "top.yaml:2:22: groups.block: there is no `block` to delete; the groups are ring, rod",
+        "top.yaml:4:3: bonds.glue: there is no `glue` to delete; there are no bonds",
+        "top.yaml:5:24: forces.wind: there is no `wind` to delete; there are no forces",
+    ]
+
+
+def test_a_null_may_say_that_a_key_keeps_its_default(folder: Path) -> None:
+    write("top.yaml", "extends: base.yaml\njitter: null\nrender:\ngroups: {rod: {velocity: null}}\n")
+    assert load("top.yaml").scene == load("base.yaml").scene
+
+
+def test_a_name_that_a_scene_between_deletes_in_vain_may_be_declared(folder: Path) -> None:
+    write("mid.yaml", "extends: base.yaml\nforces: {wind: null}\n")
+    write("top.yaml", "extends: mid.yaml\nforces: {wind: {kind: hold}}\n")
+    assert list(load("top.yaml").scene.forces) == ["weight", "wind"]
+
+
 @pytest.mark.parametrize(
     ("extends", "message"),
     [
@@ -193,7 +251,12 @@ def test_a_group_becomes_another_shape_by_deleting_the_keys_of_the_old_one(folde
         ('""', 'needs a path relative to this file (got "")'),
         ("../x.yaml", 'leads outside the folder of top.yaml (got "../x.yaml")'),
         ("link/x.yaml", 'leads outside the folder of top.yaml (got "link/x.yaml")'),
-        ("bse.yaml", "there is no such file; did you mean `base.yaml`?"),
+        ("bse.yaml", 'there is no such file (got "bse.yaml"); did you mean `base.yaml`?'),
+        (
+            "./parts/../bse.yaml",
+            'there is no such file (got "./parts/../bse.yaml"); did you mean `parts/../base.yaml`?',
+        ),
+        ("nosuch.yaml", 'there is no such file (got "nosuch.yaml")'),
         ("top.yaml", "goes round in a circle: top.yaml → top.yaml"),
         ("./parts/../top.yaml", "goes round in a circle: top.yaml → top.yaml"),
     ],
@@ -242,6 +305,24 @@ def test_settings_replace_make_and_delete() -> None:
     assert loaded.scene.forces["wind"].until_round == 5
     assert list(loaded.scene.groups) == ["ring"]
     assert loaded.scene.title == "a = b"
+
+
+def test_settings_make_the_mappings_that_are_merely_not_written() -> None:
+    settings = [
+        "render.camera.azimuth=45",
+        "render.rounds=[0, 10]",
+        "render.colors.ring='#ff0000'",
+        "jitter.amplitude=1e-9",
+        "groups.rod.spin.axis=x",
+        "groups.rod.spin.rate=1",
+        "collisions.touch={within: ring}",
+    ]
+    scene = loads(GOOD, overrides=settings).scene
+    assert (scene.render.camera.azimuth, scene.render.rounds, scene.render.colors) == (45, (0, 10), {"ring": "#ff0000"})
+    assert scene.jitter is not None
+    assert scene.jitter.amplitude == 1e-9
+    assert scene.groups["rod"].spin is not None
+    assert list(scene.collisions) == ["touch"]
 
 
 def test_a_setting_replaces_a_mapping_whole() -> None:
