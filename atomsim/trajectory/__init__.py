@@ -2,7 +2,17 @@
 
 from atomsim.trajectory.header import End, Header, trajectory_bytes
 from atomsim.trajectory.reader import Frames, Trajectory
-from atomsim.trajectory.recorder import Recorder, recover
+from atomsim.trajectory.recorder import Recorder, check_target, recover
 from atomsim.trajectory.records import journal_path
 
-__all__ = ["End", "Frames", "Header", "Recorder", "Trajectory", "journal_path", "recover", "trajectory_bytes"]
+__all__ = [
+    "End",
+    "Frames",
+    "Header",
+    "Recorder",
+    "Trajectory",
+    "check_target",
+    "journal_path",
+    "recover",
+    "trajectory_bytes",
+]

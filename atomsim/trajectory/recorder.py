@@ -50,9 +50,7 @@ class Recorder:
     """
 
     def __init__(self, path: str | os.PathLike[str], header: Header, *, replace: bool = False) -> None:
-        path = _trajectory_path(path)
-        with reading(path):
-            _check_target(path, replace=replace)
+        path = check_target(path, replace=replace)
         with held():
             writer = JournalWriter.begin(journal_path(path), header)
             try:
@@ -217,7 +215,23 @@ def _has_journal(path: Path) -> bool:
         return journal_path(path).exists()
 
 
-def _check_target(path: Path, *, replace: bool) -> None:
+def check_target(path: str | os.PathLike[str], *, replace: bool) -> Path:
+    """Return the path of a trajectory to be written, having made sure that nothing of value stands there.
+
+    Args:
+        path: as the user named it.
+        replace: whether an older trajectory of that name may go.
+
+    Raises:
+        InputError: something is there already, or nothing can be there.
+    """
+    path = _trajectory_path(path)
+    with reading(path):
+        _check_free(path, replace=replace)
+    return path
+
+
+def _check_free(path: Path, *, replace: bool) -> None:
     if not path.parent.is_dir():
         raise InputError(f"{path}: there is no folder {path.parent}")
     if path.is_dir():

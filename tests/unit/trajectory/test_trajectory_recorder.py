@@ -193,7 +193,7 @@ def test_a_second_writer_is_kept_out(tmp_path: Path, act: str) -> None:
 def test_a_writer_that_begins_at_the_same_moment_loses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Between looking whether the name is free and taking it, someone else takes it."""
     path = tmp_path / "out.h5"
-    monkeypatch.setattr(recorder, "_check_target", lambda _path, *, replace: None)
+    monkeypatch.setattr(recorder, "_check_free", lambda _path, *, replace: None)
     with Recorder(path, header()) as recording:
         recording.append(frame(0))
         with pytest.raises(RunError, match="another atomsim has just begun to write it"):
