@@ -11,9 +11,9 @@ help: ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
 demo: $(VENV)/installed ## install, run scenes/rods.yaml, draw the strip
-	$(BIN)/atomsim run scenes/rods.yaml -o rods.h5 --force
-	$(BIN)/atomsim render rods.h5
-	@echo "Now look at rods.png."
+	$(BIN)/atomsim run scenes/rods.yaml --force
+	$(BIN)/atomsim render out.h5 --rounds 0,300,600,1300
+	@echo "Now look at out.png."
 
 test: check tests golden ## everything that must hold
 
@@ -27,7 +27,8 @@ tests: $(VENV)/installed-dev ## the test suite
 	$(BIN)/pytest --numprocesses 2 --dist worksteal
 
 golden: $(VENV)/installed-dev ## every scene against its golden trajectory, bit for bit
-	$(BIN)/atomsim golden check $(SCENES) --into tests/golden
+	$(BIN)/atomsim golden check $(SCENES) --into tests/golden --backend numpy
+	$(BIN)/atomsim golden check $(SCENES) --into tests/golden --backend numba
 
 format: $(VENV)/installed-dev ## put the code into its format
 	$(BIN)/ruff format
@@ -44,7 +45,7 @@ bench: $(VENV)/installed-bench ## time everything, on a quiet machine: five minu
 	$(BIN)/python -m benchmarks.page docs/speed.json
 
 clean: ## remove what the other targets made
-	rm -rf $(VENV) rods.h5 rods.png
+	rm -rf $(VENV) out.h5 out.png
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
