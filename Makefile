@@ -5,7 +5,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENES := $(sort $(wildcard scenes/*.yaml))
 
-.PHONY: help demo test check format tests golden figures reference bench torture clean
+.PHONY: help demo test check format tests golden figures reference bench torture fuzz clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -44,6 +44,13 @@ bench: $(VENV)/installed-bench ## time everything, on a quiet machine: five minu
 	$(BIN)/python -m benchmarks --json docs/speed.json
 	$(BIN)/python -m benchmarks.page docs/speed.json
 
+torture: $(VENV)/installed-dev ## hundreds of kills, thousands of damaged files, a million rounds: an hour
+	ATOMSIM_LONG=1 $(BIN)/pytest tests/torture tests/unit/trajectory tests/cli/test_cli_hostile.py tests/property \
+		--capture=no --timeout=7200
+
+fuzz: $(VENV)/installed-fuzz ## coverage-guided fuzzing of scenes: five minutes
+	$(BIN)/python tests/fuzz/fuzz_scene.py -max_total_time=300
+
 clean: ## remove what the other targets made
 	rm -rf $(VENV) out.h5 out.png
 
@@ -56,6 +63,10 @@ $(VENV)/installed-dev: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $(VENV)/installed $@
+
+$(VENV)/installed-fuzz: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
+	@touch $@
 
 $(VENV)/installed-bench: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
