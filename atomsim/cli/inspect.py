@@ -46,6 +46,9 @@ def check(
             scene = loaded.scene
             say(f"{path}: {scene.title}" if scene.title else str(path))
             say("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
+            beyond = [shown for shown in scene.render.rounds or () if shown > scene.rounds]
+            if beyond:
+                say(f"  warning: render.rounds: there is no round {beyond[0]}; the run ends at {scene.rounds}")
     if n_wrong:
         raise typer.Exit(2)
 

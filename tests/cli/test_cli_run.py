@@ -233,5 +233,11 @@ def test_check_describes_every_scene_and_reports_every_mistake(cli):
     assert result.out.startswith("scenes/ring.yaml: ")
 
 
+def test_check_warns_of_rounds_to_show_that_are_never_run(cli):
+    result = cli("check", "scenes/rods.yaml", "--set", "rounds=250")
+    assert result.code == 0
+    assert result.out.endswith("  warning: render.rounds: there is no round 300; the run ends at 250\n")
+
+
 def test_version(cli):
     assert re.fullmatch(r"atomsim \d+\.\d+\.\d+\n", cli("--version").out)
