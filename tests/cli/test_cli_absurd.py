@@ -64,7 +64,7 @@ def checked(command: str, scene: str, folder: Path) -> tuple[int, str]:
         before=lambda: resource.setrlimit(resource.RLIMIT_AS, (LARGEST_MEMORY, LARGEST_MEMORY)),
         OPENBLAS_NUM_THREADS="1",
     )
-    assert time.monotonic() - began < 20  # a second or two on a machine with nothing else to do
+    assert time.monotonic() - began < 60  # a second or two on a machine with nothing else to do
     assert "Traceback" not in done.stderr
     assert "Warning" not in done.stderr
     return done.returncode, done.stderr

@@ -92,7 +92,7 @@ def test_damage_of_any_kind_through_every_command(cli, kind):
             source.write_bytes(damaged)
             began = time.monotonic()
             result = cli(*command)
-            assert time.monotonic() - began < 10, (number, name)
+            assert time.monotonic() - began < 60, (number, name)
             codes[f"{name}: {result.code}"] += 1
             _check(result, name, (number, name))
             if name in ("show", "verify", "compare", "render") or result.code == 2:

@@ -85,7 +85,7 @@ READY = "import sys; from atomsim.cli import main; print('ready', flush=True); m
 
 def test_ctrl_c_at_any_moment_of_the_start_is_quiet(tmp_path):
     """From the first line of ours on: while modules are loaded, the scene is compiled, the run begins."""
-    for moment in (0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4):
+    for moment in (0.02, 0.04, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4):
         process = subprocess.Popen(
             [sys.executable, "-c", READY, *LONG_RUN, "-o", f"{moment}.h5"],
             cwd=tmp_path,

@@ -191,9 +191,9 @@ def bomb(*, width: int, height: int) -> str:
     ids=["wide bomb", "deep bomb", "lists", "mappings", "items", "keys", "long", "circle", "wider circle"],
 )
 def test_what_would_fill_the_memory_ends_at_once(text: str, message: str) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()
     assert message in refusal(text)
-    assert time.perf_counter() - begin < 2
+    assert time.process_time() - begin < 10  # it takes about one
 
 
 def test_all_surprises_are_told_at_once() -> None:
