@@ -65,6 +65,29 @@ SELECTIONS = """\
 Wherever atoms are named, a part of a group will do.
 """
 
+NOTES = {
+    "atomsim run": """\
+With Numba, which is an extra, long runs are faster, to the same bits: `pip install 'atomsim[fast]'`, or in a checkout
+`.venv/bin/pip install -e '.[fast]'`. Without it, or where it is not worth its start, NumPy computes; the second line
+that is printed says which.
+
+`--resume` needs no scene, because the trajectory holds its own. With a SCENE as well, `atomsim run --resume OUT SCENE`
+first makes sure that the two are the same: they may differ in `title`, `description`, `rounds` and `render`; if
+anything else differs, nothing is run. It is the scene inside that goes on; `--rounds` says up to which round.
+""",
+    "atomsim check": """\
+The word after a number of bonds says how they are computed. All three ways give the same bits; they differ in speed.
+
+| word | bonds | how |
+| --- | --- | --- |
+| `dense` | most pairs of some atoms, as in a rod | all pairs at once, as a table |
+| `offset` | many pairs of the same difference of numbers, as in a cloth | one difference after the other |
+| `general` | any | pair by pair, looking up both atoms |
+
+`held, not computed`: both ends of all these bonds are held, so nothing can come of them.
+""",
+}
+
 EXIT_CODES = """\
 ## Exit codes
 
@@ -187,6 +210,8 @@ def _commands() -> Iterator[str]:
         yield f"## `{name}`\n"
         yield _prose(command)
         yield _parameters(command)
+        if name in NOTES:
+            yield NOTES[name]
     yield EXIT_CODES.rstrip("\n") + "\n"
 
 

@@ -10,6 +10,7 @@ What a fence of a page means:
 
 Commands of a page share a folder, which holds a copy of `scenes/`, and begin where the last one ended: one that fails
 must be followed by `$ echo $?`. A scene that no command names is run for a few rounds, so that nothing goes untried.
+A picture `docs/figures/…` or `figures/…` is one that the page draws; `./docs/figures/…` is one of another page.
 """
 
 from __future__ import annotations

@@ -35,18 +35,25 @@ class Jitter(Declaration):
 
 
 class Camera(Declaration):
-    """From where and how large the strip shows the scene."""
+    """From where and how large the strip shows the scene.
+
+    With z up, azimuth 0 is a viewer on +x and 90 one on +y; with y up, on +z and +x; with x up, on +y and +z.
+
+    What `look_at` and `width` leave open is chosen so that all atoms of the rounds shown fit, but for those that have
+    left: an atom has left when it is farther outside the box of the scene at its start than half the longest side of
+    that box. If most atoms have left, the box of the middle eight tenths of the atoms shown takes its place.
+    """
 
     azimuth: Number = 30.0
-    """Direction of the viewer about the up axis [degrees]."""
+    """Direction of the viewer about the up axis [degrees]; 0 is on the axis that follows `up` in x, y, z, x."""
     elevation: Number = 20.0
     """Height of the viewer above the horizontal [degrees]."""
     up: AxisLetter = "z"
     """The axis that points up in the picture."""
     look_at: Vector | None = None
-    """The point in the middle of the picture [length]; by default the middle of what the strip shows."""
+    """The point in the middle of the picture [length]; by default the middle of the atoms that fit."""
     width: Positive | None = None
-    """The visible width [length]; by default everything that the strip shows fits."""
+    """The visible width [length]; by default all atoms shown fit that have not left the scene."""
 
 
 class Render(Declaration):
