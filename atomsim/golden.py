@@ -84,6 +84,9 @@ def check_golden(golden: Golden, frames: Iterable[Frame], groups: Sequence[Group
 
 def _difference(golden: Golden, frame: Frame, groups: Sequence[GroupSpan]) -> Difference | None:
     position, velocity = golden.frames[frame.round_index]
+    if position.shape != frame.position.shape:
+        n_atoms = len(position), len(frame.position)
+        return Difference(frame.round_index, f"the golden has {n_atoms[0]} atoms, the scene {n_atoms[1]}")
     approved = Frame(frame.round_index, frame.time, position, velocity, "", frame.observables)
     return frame_difference(approved, frame, groups)
 

@@ -87,6 +87,10 @@ def run(
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
     check_target(path, replace=replace)  # before anything that takes long
+    if rounds is None:
+        rounds = scene.scene.rounds
+    if rounds < 1:
+        raise InputError(f"the number of rounds must be 1 or more (got {rounds})")
     model, state = compile_scene(scene.scene, scene.source)
     if warn is not None:
         for warning in forecast(model, state):
@@ -96,7 +100,7 @@ def run(
         scene_text=scene.source.text,
         scene_name=scene.source.name,
         overrides=scene.source.overrides,
-        rounds=rounds or scene.scene.rounds,
+        rounds=rounds,
         record_every=scene.scene.record_every,
         compress=compress,
     )

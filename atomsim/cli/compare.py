@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from atomsim.cli.options import Backend, Threads
-from atomsim.cli.output import say
+from atomsim.cli.output import say, tell
 
 
 def compare(
@@ -28,6 +28,8 @@ def compare(
     from atomsim.trajectory import Trajectory
 
     with Trajectory(first) as one, Trajectory(second) as other:
+        for notice in (*one.notices(), *other.notices()):
+            tell(notice)
         if one.header.n_atoms != other.header.n_atoms:
             say(f"different: {first} has {one.header.n_atoms} atoms, {second} {other.header.n_atoms}")
             raise typer.Exit(1)
@@ -59,6 +61,8 @@ def verify(
     from atomsim.trajectory import Trajectory
 
     with Trajectory(trajectory) as recorded:
+        for notice in recorded.notices():
+            tell(notice)
         header = recorded.header
         _, model, state = compile_inside(header, trajectory)
         last_round = int(recorded.rounds[-1])

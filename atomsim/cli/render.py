@@ -7,7 +7,7 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from atomsim.cli.output import say
+from atomsim.cli.output import say, tell
 
 Part = TypeVar("Part", int, float)
 
@@ -60,7 +60,7 @@ def render(
 
 
 def _notice(message: str) -> None:
-    typer.echo(message, err=True)
+    tell(message)
 
 
 def _rounds(text: str) -> list[int]:

@@ -114,7 +114,9 @@ def _sides(group: PolygonGroup) -> list[tuple[Vector, Vector]]:
 
 def _steps_along(start: Vector, stop: Vector, spacing: float) -> int:
     """Return into how many even steps a side is divided."""
-    return max(1, round(min(math.dist(start, stop) / spacing, LARGEST_WHOLE_NUMBER)))
+    dx, dy, dz = (end - begin for begin, end in zip(start, stop, strict=True))
+    length = math.sqrt((dx * dx + dy * dy) + dz * dz)
+    return max(1, round(min(length / spacing, LARGEST_WHOLE_NUMBER)))
 
 
 def _along_side(start: Vector, stop: Vector, spacing: float) -> Floats:

@@ -20,7 +20,7 @@ SERIES = np.dtype(
         ("potential_energy_collisions", "<f8"),
         ("momentum", "<f8", (3,)),
         ("angular_momentum", "<f8", (3,)),
-        ("contacts", "<i8"),
+        ("contacts", "<f8"),
     ]
 )
 """What is known of a frame besides its atoms."""

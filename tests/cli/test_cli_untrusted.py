@@ -78,7 +78,7 @@ code = outcome(globals()[ACT])
 print(json.dumps([code, seen]))
 """
 
-HARMLESS = ("/proc/meminfo", "/dev/null")
+HARMLESS = ("/proc/meminfo", *(f"/sys/fs/cgroup/memory.{name}" for name in ("max", "current", "stat")), "/dev/null")
 
 GOOD = """\
 atomsim: 1

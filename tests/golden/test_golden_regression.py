@@ -95,6 +95,14 @@ def test_recording_again_asks_for_a_reason_and_logs_it(cli, tmp_path):
     assert cli("golden", "check", scene, "--into", folder)[0] == 0
 
 
+def test_a_scene_with_other_atoms_than_its_golden(cli, tmp_path):
+    scene = tmp_path / "threads.yaml"
+    scene.write_text((ROOT / "scenes" / "rods.yaml").read_text().replace("count: 70", "count: 71", 1))
+    code, out, _ = cli("golden", "check", scene, "--into", GOLDEN)
+    assert code == 1
+    assert out == f"{scene}: differs from round 0 on; the golden has 140 atoms, the scene 141\n"
+
+
 def test_two_scenes_of_one_name_do_not_share_a_golden(cli, tmp_path):
     scene = ROOT / "scenes" / "threads.yaml"
     shutil.copy(ROOT / "scenes" / "rods.yaml", tmp_path)

@@ -67,7 +67,8 @@ def _polygon(group: Data) -> list[Vector]:
     corners = list(group["corners"])
     points = []
     for start, stop in zip(corners, [*corners[1:], corners[0]], strict=True):
-        n_steps = max(1, round(math.dist(start, stop) / group["spacing"]))
+        dx, dy, dz = (end - begin for begin, end in zip(start, stop, strict=True))
+        n_steps = max(1, round(math.sqrt(dx * dx + dy * dy + dz * dz) / group["spacing"]))
         points += [add(start, _times(i / n_steps, sub(stop, start))) for i in range(n_steps)]
     middle = _centroid(points)
     return [_quantised(sub(point, middle)) for point in points]
