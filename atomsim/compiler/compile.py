@@ -93,6 +93,8 @@ class _Compiler:
         layouts = lay_out(scene)
         n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
         self._require_room(n_atoms)
+        if scene.time_step > LARGEST:
+            self._complain(("time_step",), f"is {TOO_LARGE}")
         self._selections = Selections(layouts, n_atoms)
         with np.errstate(over="ignore", invalid="ignore"):  # what grows too large is reported next
             placed = [place(group) for group in scene.groups.values()]

@@ -56,13 +56,16 @@ class EnergyBudget:
                     pass
                 case _:
                     assert_never(force)
-        self._push = float(np.sqrt((push * push).sum()))
+        largest = float(push.max()) or 1.0
+        share = push / largest  # squares of the pushes themselves may not be finite
+        self._push = largest * float(np.sqrt((share * share).sum()))
 
     def at(self, round_index: int) -> float:
         """Return the most energy that can be explained at a round."""
         if not self._is_known:
             return math.inf
-        return SLACK * 0.5 * (self._begin + self._push * round_index) ** 2 + self._trifle
+        root = self._begin + self._push * round_index
+        return SLACK * 0.5 * root * root + self._trifle  # a power would raise where a product becomes infinite
 
 
 def total_energy(observables: Observables) -> float:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import re
 from collections.abc import Mapping
 from itertools import pairwise
@@ -51,6 +50,7 @@ FIELDS: Mapping[str, Kind] = {
 }
 
 _PYTHON_TYPE: Mapping[Kind, Any] = {"text": str, "texts": str, "whole": int, "wholes": int, "real": float, "flag": bool}
+_LARGEST_TIME_STEP = 1e150  # times of rounds stay finite
 _MOST_ATOMS = 2**31 - 1
 _MOST_ROUNDS = 2**63 - 1
 
@@ -119,7 +119,7 @@ def header_from(values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNu
     check_version(values)
     for name, kind in FIELDS.items():
         _require(_is_kind(values.get(name), kind), name)
-    _require(math.isfinite(values["time_step"]) and values["time_step"] > 0, "time_step")
+    _require(0 < values["time_step"] <= _LARGEST_TIME_STEP, "time_step")
     _require(0 < values["n_atoms"] <= _MOST_ATOMS, "n_atoms")
     _require(0 <= values["rounds"] <= _MOST_ROUNDS, "rounds")
     _require(0 < values["record_every"] <= _MOST_ROUNDS, "record_every")

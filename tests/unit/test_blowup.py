@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from support.running import atoms_at, compiled
 
-from atomsim.core.blowup import FLOWN_APART, explain, is_sound
-from atomsim.core.energy import total_energy
+from atomsim.core.blowup import FLOWN_APART, explain, is_sound, loss
+from atomsim.core.energy import EnergyBudget, total_energy
 from atomsim.core.model import Model, State
-from atomsim.core.simulate import simulate
+from atomsim.core.observables import Observer
+from atomsim.core.simulate import frame_of, simulate
 from atomsim.errors import BlowUpError
 
 PAIR = {"calm": atoms_at((0, 0, 9)), "pair": atoms_at((0, 0, 0), (1.5, 0, 0))}
@@ -139,3 +140,21 @@ def test_energy_out_of_nowhere_ends_a_run_long_before_an_atom_flies_off() -> Non
 def test_energy_that_forces_give_is_no_blow_up(forces: dict[str, Any]) -> None:
     model, state = compiled(ROD, 0.1, bonds=BOUND, forces=forces, jitter=TREMBLE)
     assert len(list(simulate(model, state, 2000, 50))) == 41
+
+
+def test_a_push_beyond_all_numbers_that_never_comes() -> None:
+    """The budget of energy is infinite then, without a warning."""
+    storm = {"kind": "push", "impulse": [0, 0, 1e200], "from_round": 90}
+    model, state = compiled(PAIR, 0.1, forces={"storm": storm})
+    assert len(list(simulate(model, state, 50, 10))) == 6
+
+
+@pytest.mark.parametrize("what", ["position", "velocity"])
+@pytest.mark.parametrize("number", [np.nan, np.inf, 1e300, 2.1 * FLOWN_APART])
+def test_what_observables_tell_is_what_atoms_tell(what: str, number: float) -> None:
+    """Frames are first judged by their observables, which are at hand."""
+    model, state = state_with(number, what)
+    _, sound = state_with(0.0, "position")
+    budget = EnergyBudget(model, sound, Observer(model).observe(sound))
+    is_lost = loss(frame_of(model, state, Observer(model)), model, budget) == "flew off"
+    assert is_lost != is_sound(model, state)

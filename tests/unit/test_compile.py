@@ -248,6 +248,24 @@ def test_numbers_too_large_to_compute_with(group: dict[str, Any]) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("sections", "message"),
+    [
+        ({"time_step": 1e151}, "time_step: is too large to compute with"),
+        (
+            {"bonds": {"b": {"within": "a", "rule": "all-pairs", "rest": 1e151}}},
+            "bonds.b.rest: is too large to compute with",
+        ),
+        (
+            {"forces": {"t": {"kind": "tether", "target": [0, 0, 1e151]}}},
+            "forces.t.target: its numbers are too large to compute with",
+        ),
+    ],
+)
+def test_other_numbers_too_large_to_compute_with(sections: dict[str, Any], message: str) -> None:
+    assert mistakes({"a": atoms_at((0, 0, 0), (3, 0, 0))}, **sections) == [message]
+
+
 def test_a_jitter_too_large_to_compute_with() -> None:
     found = mistakes({"a": atoms_at((0, 0, 0), (1, 0, 0))}, jitter={"amplitude": 1e308})
     assert found == ["groups.a: its numbers are too large to compute with"]
