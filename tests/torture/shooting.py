@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 
 from atomsim.cli import main
@@ -29,38 +30,50 @@ ROUNDS, FEWER_ROUNDS = 2000, 1234
 SIGNALS = [signal.SIGKILL] * 6 + [signal.SIGINT, signal.SIGTERM]
 
 
-class Target:
-    """One trajectory that is written under fire.
+@dataclass
+class Range:
+    """What all targets share.
 
-    Args:
-        path: the trajectory.
+    Attributes:
         whole: the uninterrupted run.
-        dice: chooses moments, signals and backends.
+        seconds: about how long a command lives; learnt, for other work may slow the machine.
         backends: to choose from.
+        dice: chooses moments, signals and backends.
         counts: what has happened.
     """
 
-    def __init__(
-        self, path: Path, whole: Path, seconds: float, dice: random.Random, backends: list[str], counts: Counter[str]
-    ) -> None:
+    whole: Path
+    seconds: float
+    backends: list[str]
+    dice: random.Random
+    counts: Counter[str]
+
+
+class Target:
+    """One trajectory that is written under fire."""
+
+    def __init__(self, path: Path, shared: Range) -> None:
         self._path = path
-        self._whole = whole
-        self._seconds = seconds
-        self._dice = dice
-        self._backends = backends
-        self._counts = counts
+        self._shared = shared
+        self._whole = shared.whole
+        self._dice = shared.dice
+        self._counts = shared.counts
         self._n_frames = 0
-        with Trajectory(whole) as trajectory:
+        with Trajectory(self._whole) as trajectory:
             self._digests = dict(zip(trajectory.rounds.tolist(), trajectory.digests, strict=True))
 
     def shoot(self) -> None:
         """Start, shoot, check and go on, until the file is the uninterrupted run."""
         while not self._is_whole():
             rounds = ROUNDS if self._n_frames else self._dice.choice([ROUNDS, FEWER_ROUNDS])
-            child = start(*self._command(), "--rounds", str(rounds), "--backend", self._dice.choice(self._backends))
+            child = start(
+                *self._command(), "--rounds", str(rounds), "--backend", self._dice.choice(self._shared.backends)
+            )
             arms = self._dice.choice(SIGNALS)
             # Half of the shots are meant for the end, when the file is built.
-            time.sleep(self._seconds * self._dice.choice([self._dice.uniform(0, 1.2), self._dice.uniform(0.8, 1.1)]))
+            time.sleep(
+                self._shared.seconds * self._dice.choice([self._dice.uniform(0, 1.1), self._dice.uniform(0.8, 1.05)])
+            )
             os.kill(child, arms)
             self._check_code(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), arms)
             self._check_frames()
@@ -81,6 +94,7 @@ class Target:
 
     def _check_code(self, code: int, arms: signal.Signals) -> None:
         self._counts["ended before the shot" if code == 0 else f"ended by {arms.name}"] += 1
+        self._shared.seconds *= 0.9 if code == 0 else 1.02
         # Before its handlers are there, a process dies of SIGTERM as the system has it.
         allowed = {signal.SIGKILL: {-9}, signal.SIGINT: {130}, signal.SIGTERM: {143, -15}}[arms]
         assert code in {0, *allowed}, (code, arms)
@@ -130,11 +144,11 @@ def shoot_at_many(n_kills: int, seed: int, backends: list[str], folder: Path) ->
     os.waitpid(start("run", str(SCENE), "-o", str(whole), "--rounds", str(ROUNDS), "--backend", backends[0]), 0)
     seconds = time.monotonic() - began
     render(whole, folder / "whole.png", size=(32, 24))
-    dice = random.Random(seed)
     counts: Counter[str] = Counter()
+    shared = Range(whole, seconds, backends, random.Random(seed), counts)
     while sum(counts[f"ended by {arms.name}"] for arms in set(SIGNALS)) < n_kills:
         path = folder / f"{counts['files finished']}.h5"
-        Target(path, whole, seconds, dice, backends, counts).shoot()
+        Target(path, shared).shoot()
         render(path, folder / "again.png", size=(32, 24))
         assert (folder / "again.png").read_bytes() == (folder / "whole.png").read_bytes()
         path.unlink()
