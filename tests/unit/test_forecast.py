@@ -96,20 +96,20 @@ def test_touching_is_no_overlap() -> None:
 
 
 def test_absurd_numbers_are_warned_of_in_finite_words() -> None:
-    """No time step to try can be named where there is none."""
+    """The stiffness names no time step to try where there is none; every number said is finite."""
     groups = {"a": atoms_at((0, 0, 0), (1e-150, 0, 0), velocity=[1e150, 0, 0])}
     found = warnings(
         groups,
-        1e308,
+        1e150,
         bonds={"b": {"within": "a", "rule": "all-pairs", "rest": 1e150}},
         collisions={"c": {"within": "a"}},
     )
     assert found == [
-        "time_step 1e+308 is at or above 0, the largest that the stiffness of this scene allows; expect it to blow up",
-        "collisions.c (<scene>:1): atoms of a move inf per round, so two of them may pass through each other "
-        "(contact is at distance 2)",
+        "time_step 1e+150 is at or above 0, the largest that the stiffness of this scene allows; expect it to blow up",
+        "collisions.c (<scene>:1): atoms of a move 1e+300 per round, so two of them may pass through each other "
+        "(contact is at distance 2); try time_step 5e-151",
         "collisions.c (<scene>:1): 1 pair overlaps at the start, most a[0] (atom 0) and a[1] (atom 1) 1e-150 apart "
-        "(contact is at 2); that releases the energy 1.38e-305; "
+        "(contact is at 2); that releases the energy 1.38e-147; "
         "move them apart, or leave them out of the collision",
     ]
 
