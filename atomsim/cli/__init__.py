@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from pathlib import Path
 
 INTERRUPTED = 130
 
+OBJECTS_PER_COLLECTION = 100_000
+"""Loading modules makes many objects and no garbage; looking for it all the time takes a tenth of a command's start."""
+
 
 def main() -> None:
     """Run the command line and end the process with its exit code: the entry point of `atomsim`."""
+    gc.set_threshold(OBJECTS_PER_COLLECTION)
+    # A scene means the same whatever else is installed, and looking for plugins takes time.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         from atomsim.cli.output import prepare, tell
         from atomsim.errors import AtomsimError

@@ -7,8 +7,8 @@ per component, which lets every operation run along contiguous memory.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import accumulate, pairwise, starmap
+from collections.abc import Iterable, Iterator
+from itertools import accumulate, groupby, pairwise, starmap
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -22,13 +22,16 @@ RUN_PAIRS = 48
 """From this many pairs per run on, slices beat gathering."""
 
 FEW_PAIRS = 300
-"""Below this number of pairs calls cost more than pairs, and one gathering form serves a whole table."""
+"""Below this number of pairs calls cost more than pairs: such spans share one gathering form."""
 
 RUN_GAP = 8
 """So many missing pairs in a row are cheaper to compute in vain than to begin a new run for."""
 
 TILE_BYTES = 1 << 19
 """A tile of differences should stay in the cache of one core."""
+
+DENSE_BYTES = 48
+"""What a tile holds for each pair of partner and atom: differences and their squares."""
 
 
 class BondForm(Protocol):
@@ -44,6 +47,35 @@ class BondForm(Protocol):
 
     def subtotal(self, position: Floats) -> Floats:
         """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
+
+
+def joined(tables: Iterable[BondTable]) -> list[BondTable]:
+    """Join tables that follow one another and share no atom, for a few long arrays are faster than many short ones.
+
+    No sum changes by a bit: the order of tables matters only where they meet on an atom.
+    """
+    tables = [table for table in tables if table.first.size]
+    n_atoms = max((int(table.second.max()) + 1 for table in tables), default=0)
+    parts: list[list[BondTable]] = []
+    taken = np.zeros(n_atoms, dtype=bool)
+    for table in tables:
+        touched = np.zeros(n_atoms, dtype=bool)
+        touched[table.first] = touched[table.second] = True
+        if parts and not (touched & taken).any():
+            parts[-1].append(table)
+            taken |= touched
+        else:
+            parts.append([table])
+            taken = touched
+    return [part[0] if len(part) == 1 else _join(part) for part in parts]
+
+
+def _join(tables: list[BondTable]) -> BondTable:
+    first = np.concatenate([table.first for table in tables])
+    second = np.concatenate([table.second for table in tables])
+    rest_squared = np.concatenate([table.rest_squared for table in tables])
+    order = np.lexsort((second, first))
+    return BondTable(tables[0].origin, first[order], second[order], rest_squared[order])
 
 
 def bond_forms(table: BondTable, resting: Indices | None = None) -> list[BondForm]:
@@ -62,19 +94,63 @@ def bond_forms(table: BondTable, resting: Indices | None = None) -> list[BondFor
         is_resting[resting[resting < is_resting.size]] = True
         kept = ~(is_resting[first] & is_resting[second])
         first, second, rest_squared = first[kept], second[kept], rest_squared[kept]
-    if first.size < FEW_PAIRS:
-        return [GeneralForm(*_local(first, second), rest_squared)] if first.size else []
-    return [_form(first[part], second[part], rest_squared[part]) for part in _disjoint_spans(first, second)]
+    spans = _few_together(_side_by_side(_disjoint_spans(first, second)))
+    return [_form(span, first[span.pairs], second[span.pairs], rest_squared[span.pairs]) for span in spans]
 
 
-def _disjoint_spans(first: Indices, second: Indices) -> Iterator[slice]:
+class _Span(NamedTuple):
+    """Consecutive pairs, the atoms they touch, and how many dense bodies of one size these are; 0 if not dense."""
+
+    pairs: slice
+    atoms: slice
+    n_bodies: int
+
+
+def _disjoint_spans(first: Indices, second: Indices) -> Iterator[_Span]:
     """Cut sorted pairs wherever no pair reaches over the cut."""
     if not first.size:
         return
     reach = np.maximum.accumulate(second)
     cuts = np.flatnonzero(first[1:] > reach[:-1]) + 1
-    bounds = [0, *cuts.tolist(), first.size]
-    yield from map(slice, bounds[:-1], bounds[1:])
+    for start, stop in pairwise([0, *cuts.tolist(), first.size]):
+        atoms = slice(int(first[start]), int(reach[stop - 1]) + 1)
+        n_atoms = atoms.stop - atoms.start
+        is_dense = stop - start >= DENSE_FILL * n_atoms * (n_atoms - 1) / 2
+        yield _Span(slice(start, stop), atoms, int(is_dense))
+
+
+def _side_by_side(spans: Iterable[_Span]) -> list[_Span]:
+    """Put dense bodies of one size that follow one another together, as many as one tile can hold."""
+    together: list[_Span] = []
+    for span in spans:
+        before = together[-1] if together else None
+        n_atoms = span.atoms.stop - span.atoms.start
+        if (
+            before is not None
+            and before.n_bodies
+            and span.n_bodies
+            and before.atoms.stop == span.atoms.start
+            and before.atoms.stop - before.atoms.start == before.n_bodies * n_atoms
+            and (before.n_bodies + 1) * n_atoms * n_atoms * DENSE_BYTES <= TILE_BYTES
+        ):
+            together[-1] = _Span(
+                slice(before.pairs.start, span.pairs.stop),
+                slice(before.atoms.start, span.atoms.stop),
+                before.n_bodies + 1,
+            )
+        else:
+            together.append(span)
+    return together
+
+
+def _few_together(spans: Iterable[_Span]) -> Iterator[_Span]:
+    """Put spans of few pairs that follow one another together."""
+    for is_few, run in groupby(spans, key=lambda span: span.pairs.stop - span.pairs.start < FEW_PAIRS):
+        together = list(run)
+        if is_few:
+            pairs = slice(together[0].pairs.start, together[-1].pairs.stop)
+            together = [_Span(pairs, slice(together[0].atoms.start, together[-1].atoms.stop), 0)]
+        yield from together
 
 
 def _local(first: Indices, second: Indices) -> tuple[slice, Indices, Indices]:
@@ -85,12 +161,13 @@ def _local(first: Indices, second: Indices) -> tuple[slice, Indices, Indices]:
     return atoms, first - atoms.start, second - atoms.start
 
 
-def _form(first: Indices, second: Indices, rest_squared: Floats) -> BondForm:
+def _form(span: _Span, first: Indices, second: Indices, rest_squared: Floats) -> BondForm:
     """Choose the form for the pairs of one span."""
     atoms, first, second = _local(first, second)
-    n_atoms = atoms.stop - atoms.start
-    if first.size >= DENSE_FILL * n_atoms * (n_atoms - 1) / 2:
-        return DenseForm(atoms, first, second, rest_squared)
+    if span.n_bodies:
+        return DenseForm(atoms, span.n_bodies, first, second, rest_squared)
+    if first.size < FEW_PAIRS:
+        return GeneralForm(atoms, first, second, rest_squared)
     order = np.lexsort((first, second - first))
     bounds = _run_bounds(first[order], second[order])
     if first.size >= RUN_PAIRS * (len(bounds) - 1):
@@ -119,52 +196,55 @@ def weigh_bonds(weight: Floats, rest_squared: Floats) -> None:
 
 
 class DenseForm:
-    """All pairs of a span at once: rows are partners, columns are atoms, and the sum runs down the rows.
+    """All pairs of each of some bodies at once: rows are partners, columns are atoms, and the sum runs down the rows.
 
     The differences x_k − x_i come from the matrix product [x_k, 1] · [1; −x_i]: both its products are exact, so its
-    one addition rounds exactly as the subtraction does. Columns are cut into tiles to stay in the cache.
+    one addition rounds exactly as the subtraction does. Bodies of one size lie side by side; the columns of a large one
+    are cut into tiles to stay in the cache.
     """
 
     name = "dense"
 
-    def __init__(self, atoms: slice, first: Indices, second: Indices, rest_squared: Floats) -> None:
-        n_atoms = atoms.stop - atoms.start
-        n_tiles = max(1, min(n_atoms // 2, round(n_atoms * n_atoms * 48 / TILE_BYTES)))
-        edges = np.arange(n_tiles + 1) * n_atoms // n_tiles
+    def __init__(self, atoms: slice, n_bodies: int, first: Indices, second: Indices, rest_squared: Floats) -> None:
+        n_span = atoms.stop - atoms.start
+        n_atoms = n_span // n_bodies
+        n_tiles = max(1, min(n_atoms // 2, round(n_span * n_atoms * DENSE_BYTES / TILE_BYTES)))
+        edges = np.arange(n_tiles + 1) * n_span // n_tiles
         above, below = np.searchsorted(first, edges), _n_below(second, edges)
         by_second = np.argsort(second, kind="stable")
         self.atoms = atoms
+        self._bodies = (3, n_bodies, n_atoms)
         self._tiles = []
         for tile, columns in enumerate(starmap(slice, pairwise(edges.tolist()))):
             upper, lower = slice(*above[tile : tile + 2]), by_second[slice(*below[tile : tile + 2])]
             partner = np.concatenate((second[upper], first[lower]))
-            atom = np.concatenate((first[upper], second[lower])) - columns.start
+            atom = np.concatenate((first[upper], second[lower]))
             rest = np.concatenate((rest_squared[upper], rest_squared[lower]))
-            self._tiles.append(_DenseTile(columns, n_atoms, partner, atom, rest))
-        self._left = np.ones((3, n_atoms, 2))
-        self._right = np.ones((3, 2, n_atoms))
+            self._tiles.append(_DenseTile(columns, n_bodies, n_atoms, partner, atom, rest))
+        self._left = np.ones((3, n_bodies, n_atoms, 2))
+        self._right = np.ones((3, n_bodies, 2, n_atoms))
         largest = max(tile.rest_squared.size for tile in self._tiles)
         self._scratch = np.empty((7, largest))
-        self._subtotal = np.empty((3, n_atoms))
+        self._subtotal = np.empty(self._bodies)
 
     def subtotal(self, position: Floats) -> Floats:
         """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
-        span = position[:, self.atoms]
-        self._left[:, :, 0] = span
-        np.negative(span, out=self._right[:, 1, :])
+        bodies = position[:, self.atoms].reshape(self._bodies)
+        self._left[..., 0] = bodies
+        np.negative(bodies, out=self._right[:, :, 1])
         for tile in self._tiles:
             shape, size = tile.rest_squared.shape, tile.rest_squared.size
             scratch = self._scratch.reshape(-1)[: 7 * size].reshape(7, *shape)
             difference, squared, weight = scratch[:3], scratch[3:6], scratch[6]
-            np.matmul(self._left, self._right[:, :, tile.columns], out=difference)
+            np.matmul(self._left, self._right[..., tile.columns], out=difference.transpose(0, 2, 1, 3))
             square_distance(difference, squared, weight)
             weight.reshape(-1)[tile.unbound] = np.inf  # no pair, no division by zero
             weigh_bonds(weight, tile.rest_squared)
             if tile.has_gaps:
                 weight.reshape(-1)[tile.unbound] = 0.0
             np.multiply(difference, weight, out=difference)
-            np.add.reduce(difference, axis=1, out=self._subtotal[:, tile.columns])
-        return self._subtotal
+            np.add.reduce(difference, axis=1, out=self._subtotal[..., tile.columns])
+        return self._subtotal.reshape(3, -1)
 
 
 def _n_below(atoms: Indices, edges: Indices) -> Indices:
@@ -174,16 +254,29 @@ def _n_below(atoms: Indices, edges: Indices) -> Indices:
 
 
 class _DenseTile:
-    """The constant part of some columns of a dense form: r² per (partner, atom) and the places that are no pair."""
+    """The constant part of some columns of a dense form: r² per (partner, body, atom) and the places that are no pair.
 
-    def __init__(self, columns: slice, n_atoms: int, partner: Indices, atom: Indices, rest_squared: Floats) -> None:
-        self.columns = columns
-        self.rest_squared = np.zeros((n_atoms, columns.stop - columns.start))
-        self.rest_squared[partner, atom] = rest_squared
+    Args:
+        columns: atoms of the span; all of them if there is more than one body.
+        n_bodies: how many bodies lie side by side.
+        n_atoms: atoms of each body.
+        partner: atom of the span that pulls, (n_entries,).
+        atom: atom of the span that is pulled, (n_entries,).
+        rest_squared: r² of each entry [length²], (n_entries,).
+    """
+
+    def __init__(
+        self, columns: slice, n_bodies: int, n_atoms: int, partner: Indices, atom: Indices, rest_squared: Floats
+    ) -> None:
+        n_columns = (columns.stop - columns.start) // n_bodies
+        self.columns = slice(columns.start, columns.start + n_columns)
+        self.rest_squared = np.zeros((n_atoms, n_bodies, n_columns))
+        place = partner % n_atoms, atom // n_atoms, atom % n_atoms - columns.start
+        self.rest_squared[place] = rest_squared
         is_bound = np.zeros(self.rest_squared.shape, dtype=bool)
-        is_bound[partner, atom] = True
+        is_bound[place] = True
         self.unbound = np.flatnonzero(~is_bound)
-        self.has_gaps = self.unbound.size > columns.stop - columns.start
+        self.has_gaps = self.unbound.size > n_bodies * n_columns
         # an atom is no partner of itself either, but there the difference is zero
 
 

@@ -23,6 +23,9 @@ SKIN = 0.5
 NARROWEST_SKIN, WIDEST_SKIN = 0.1, 8.0
 """Between these the next list may look further, or less far."""
 
+FEW_PAIRS = 1 << 17
+"""So few pairs may all be listed: a list may look as far as it likes, where an atom falls out of the scene, say."""
+
 MAKING_COST = 400
 """Finding the partners of one atom takes about as long as one round of so many partners."""
 
@@ -40,10 +43,14 @@ class NearList:
         self._tables = tables
         self._n_updates = 0
         self._skin = skin
+        self._widest_skin = widest_skin(tables)
         self._atoms = as_index(involved_atoms(tables, n_atoms))
         self._made_at: Floats | None = None
-        self.pairs: list[tuple[Indices, Indices]] = []
-        """For each table the near pairs (first, second), sorted, valid for the last position asked about."""
+        none = np.empty(0, dtype=np.int64)
+        self.first, self.second = none, none
+        """The near pairs of all tables, table after table and each sorted, valid for the last position asked about."""
+        self.bounds = np.zeros(len(tables) + 1, dtype=np.int64)
+        """The near pairs of a table are those from bounds[table] to bounds[table + 1]."""
 
     def update(self, position: Floats) -> bool:
         """Make the lists valid for a position, (3, n_atoms); return whether they had to be made anew."""
@@ -54,11 +61,13 @@ class NearList:
         if self._made_at is not None:
             if squared_distance(self._made_at, involved).max() < squared_reach(self._skin):
                 return False
-            n_near = 2 * sum(first.size for first, _ in self.pairs)
-            self._skin = better_skin(self._skin, self._n_updates, MAKING_COST * involved.shape[1], n_near)
+            making = MAKING_COST * involved.shape[1]
+            self._skin = better_skin(self._skin, self._widest_skin, self._n_updates, making, 2 * self.first.size)
         self._made_at = involved.copy()
         self._n_updates = 0
-        self.pairs = [table_pairs_near(table, position, 2.0 + self._skin) for table in self._tables]
+        pairs = [table_pairs_near(table, position, 2.0 + self._skin) for table in self._tables]
+        self.first, self.second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
+        np.cumsum([first.size for first, _ in pairs], out=self.bounds[1:])
         return True
 
 
@@ -67,18 +76,24 @@ def squared_reach(skin: float) -> float:
     return 0.25 * 0.999999 * skin * skin
 
 
-def better_skin(skin: float, n_rounds: int, making: float, n_near: int) -> float:
+def widest_skin(tables: Iterable[CollisionTable]) -> float:
+    """Return how much further than contact lists may look without danger of becoming huge [length]."""
+    return 1e6 if sum(map(n_collision_pairs, tables)) <= FEW_PAIRS else WIDEST_SKIN
+
+
+def better_skin(skin: float, widest: float, n_rounds: int, making: float, n_near: int) -> float:
     """Return how far the next list should look, so that making lists costs one to four times as much as using them.
 
     Args:
         skin: how much further than contact the last list looked [length].
+        widest: how much further it may look [length].
         n_rounds: rounds that it was valid for.
         making: what making it cost, in partners used in one round.
         n_near: partners it listed, over all these atoms.
     """
     using = n_near * n_rounds
     if making > 4 * using:
-        return min(1.4 * skin, WIDEST_SKIN)
+        return min(1.4 * skin, widest)
     return max(skin / 1.4, NARROWEST_SKIN) if making < using else skin
 
 

@@ -76,11 +76,23 @@ def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indic
 
 def squared_distance(left: Floats, right: Floats) -> Floats:
     """Return (dx·dx + dy·dy) + dz·dz of positions (3, …) that broadcast against each other."""
-    difference = right - left
+    return _squares(right - left)
+
+
+def _squares(difference: Floats) -> Floats:
+    """Return d² of differences (3, …), which are lost."""
     difference *= difference
-    total: Floats = difference[0] + difference[1]
-    total += difference[2]
-    return total
+    squared: Floats = difference[0] + difference[1]
+    squared += difference[2]
+    return squared
+
+
+def _all_squares(left: Floats, right: Floats) -> Floats:
+    """Return d² of all pairs (n_left, n_right); see `DenseForm` for the differences, which are exact."""
+    rows, columns = np.ones((3, left.shape[1], 2)), np.ones((3, 2, right.shape[1]))
+    rows[:, :, 0] = left
+    np.negative(right, out=columns[:, 1])
+    return _squares(rows @ columns)
 
 
 def pair_squares(position: Floats, first: Indices, second: Indices) -> Floats:
@@ -91,12 +103,9 @@ def pair_squares(position: Floats, first: Indices, second: Indices) -> Floats:
         first: one atom of each pair, (n_pairs,).
         second: the other, (n_pairs,).
     """
-    squares = np.empty(first.size)
-    for start in range(0, first.size, STRETCH):
-        pairs = slice(start, start + STRETCH)
-        ends = (np.take(position, atoms[pairs], axis=1) for atoms in (first, second))
-        squares[pairs] = squared_distance(*ends)
-    return squares
+    stretches = [slice(start, start + STRETCH) for start in range(0, max(1, first.size), STRETCH)]
+    squares = [_squares(position.take(second[part], axis=1) - position.take(first[part], axis=1)) for part in stretches]
+    return squares[0] if len(squares) == 1 else np.concatenate(squares)
 
 
 def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Found]:
@@ -105,9 +114,10 @@ def _by_tiles(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Fou
     n_right = partner.shape[1]
     rows = max(1, TILE // max(1, n_right))
     for start in range(0, left.shape[1], rows):
-        band = left[:, start : start + rows, None]
+        band = left[:, start : start + rows]
         origin = start if right is None else 0  # inside one set only partners from the band's first row on matter
-        first, second = np.nonzero(squared_distance(band, partner[:, None, origin:]) < cutoff * cutoff)
+        near = np.flatnonzero(_all_squares(band, partner[:, origin:]) < cutoff * cutoff)
+        first, second = np.divmod(near, n_right - origin)
         first += start
         second += origin
         if right is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from atomsim.core.bonds import joined
 from atomsim.core.collisions import CONTACT_SQUARED, NearList
 from atomsim.core.model import BondTable, Floats, Model, Observables, State
 from atomsim.core.near import STRETCH, pair_squares
@@ -18,8 +19,8 @@ class Observer:
 
     def __init__(self, model: Model) -> None:
         self._time_step = model.time_step
-        self._bonds = [_Bonds(table) for table in model.bonds]
-        self._near = NearList(model.collisions, model.n_atoms)
+        self._bonds = [_Bonds(table) for table in joined(model.bonds)]
+        self._near = NearList(model.collisions, model.n_atoms, skin=2.0)  # atoms have moved far from frame to frame
 
     def observe(self, state: State) -> Observables:
         """Return the observables of a state.
@@ -32,23 +33,24 @@ class Observer:
 
     def _observe(self, state: State) -> Observables:
         position, velocity = np.ascontiguousarray(state.position.T), np.ascontiguousarray(state.velocity.T)
-        (x, y, z), (u, v, w) = position, velocity
-        bonds = sum(table.energy(position) for table in self._bonds)
-        self._near.update(position)
-        collisions, contacts = 0.0, 0
-        for first, second in self._near.pairs:
-            squared = pair_squares(position, first, second)
-            squared = squared[squared < CONTACT_SQUARED]
-            contacts += squared.size
-            collisions += float(contact_potential(squared).sum())
+        touching = self._touching(position)
+        yzx, zxy = [1, 2, 0], [2, 0, 1]
+        moment = position.take(yzx, axis=0) * velocity.take(zxy, axis=0)
+        moment -= position.take(zxy, axis=0) * velocity.take(yzx, axis=0)
         return Observables(
             kinetic_energy=0.5 * float((velocity * velocity).sum()),
-            potential_energy_bonds=float(bonds) / self._time_step,
-            potential_energy_collisions=collisions / self._time_step,
+            potential_energy_bonds=sum(table.energy(position) for table in self._bonds) / self._time_step,
+            potential_energy_collisions=float(contact_potential(touching).sum()) / self._time_step,
             momentum=velocity.sum(axis=1),
-            angular_momentum=np.array([(y * w - z * v).sum(), (z * u - x * w).sum(), (x * v - y * u).sum()]),
-            contacts=contacts,
+            angular_momentum=moment.sum(axis=1),
+            contacts=touching.size,
         )
+
+    def _touching(self, position: Floats) -> Floats:
+        """Return d² of the pairs in contact, (n_contacts,)."""
+        self._near.update(position)
+        squared = pair_squares(position, self._near.first, self._near.second)
+        return squared[squared < CONTACT_SQUARED]
 
 
 class _Bonds:
@@ -77,5 +79,10 @@ def contact_potential(squared: Floats) -> Floats:
 
 def _potential(squared: Floats, rest_squared: Floats | float, divisor: Floats | float) -> Floats:
     """Return U = ½ (d² − r² − r² ln(d²/r²)); where r is zero the divisor is one, and the logarithm's term vanishes."""
-    energy: Floats = 0.5 * (squared - rest_squared - rest_squared * np.log(squared / divisor))
+    logarithm = squared / divisor
+    np.log(logarithm, out=logarithm)
+    logarithm *= rest_squared
+    energy = squared - rest_squared
+    energy -= logarithm
+    energy *= 0.5
     return energy

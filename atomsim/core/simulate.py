@@ -63,13 +63,14 @@ def simulate(
     first = first or state
     budget = EnergyBudget(model, first, observer.observe(first))
     stepper = make_stepper(model, state)
+    pace = _Pace(stepper, report)
     frame = frame_of(model, state, observer)
     yield frame
     if report is not None:
         report(state.round_index)
     while state.round_index < rounds:
         next_round = min(rounds, (state.round_index // record_every + 1) * record_every)
-        _advance(stepper, state.round_index, next_round, report)
+        pace.advance(state.round_index, next_round)
         before, state = state, stepper.state()
         frame = frame_of(model, state, observer)
         if loss(frame, model, budget):
@@ -77,17 +78,32 @@ def simulate(
         yield frame
 
 
-def _advance(stepper: Stepper, round_index: int, stop: int, report: Callable[[int], None] | None) -> None:
-    """Advance to a round in stretches that take about REPORT_SECONDS each; how it is cut changes no bit."""
-    stretch = stop - round_index if report is None else 1
-    while round_index < stop:
-        begin = time.perf_counter()
-        n_rounds = min(stretch, stop - round_index)
-        stepper.advance(n_rounds)
-        round_index += n_rounds
-        if report is not None:
-            report(round_index)
-            stretch = 2 * n_rounds if time.perf_counter() - begin < REPORT_SECONDS else max(1, n_rounds // 2)
+class _Pace:
+    """Advances a stepper in stretches that take about REPORT_SECONDS each; how it is cut changes no bit.
+
+    Args:
+        stepper: what is advanced.
+        report: called after each stretch with the round reached; without one there is no reason to stop on the way.
+    """
+
+    def __init__(self, stepper: Stepper, report: Callable[[int], None] | None) -> None:
+        self._stepper = stepper
+        self._report = report
+        self._stretch = 1
+
+    def advance(self, round_index: int, stop: int) -> None:
+        """Advance from one round to another."""
+        if self._report is None:
+            self._stepper.advance(stop - round_index)
+            return
+        while round_index < stop:
+            begin = time.perf_counter()
+            n_rounds = min(self._stretch, stop - round_index)
+            self._stepper.advance(n_rounds)
+            round_index += n_rounds
+            self._report(round_index)
+            is_quick = time.perf_counter() - begin < REPORT_SECONDS
+            self._stretch = max(self._stretch, 2 * n_rounds) if is_quick else max(1, n_rounds // 2)
 
 
 def frame_of(model: Model, state: State, observer: Observer) -> Frame:

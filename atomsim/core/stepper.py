@@ -5,12 +5,14 @@ This is the reference backend. Inside, arrays are (3, n_atoms), one contiguous r
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
-from atomsim.core.bonds import Scatter, bond_forms
+from atomsim.core.bonds import Scatter, bond_forms, joined
 from atomsim.core.collisions import CONTACT_SQUARED, NearList
 from atomsim.core.forces import held_atoms, prepare_forces
-from atomsim.core.model import Floats, Indices, Model, State
+from atomsim.core.model import Floats, Model, State
 
 
 class NumpyStepper:
@@ -23,7 +25,7 @@ class NumpyStepper:
 
     def __init__(self, model: Model, state: State) -> None:
         self._time_step = model.time_step
-        self._bonds = [bond_forms(table, held_atoms(model.forces)) for table in model.bonds]
+        self._bonds = [bond_forms(table, held_atoms(model.forces)) for table in joined(model.bonds)]
         self._near = NearList(model.collisions, model.n_atoms)
         self._forces = prepare_forces(model.forces)
         self._round_index = state.round_index
@@ -51,8 +53,7 @@ class NumpyStepper:
             for form in forms:
                 impulse[:, form.atoms] += form.subtotal(position)
         self._near.update(position)
-        for first, second in self._near.pairs:
-            add_collisions(impulse, position, first, second)
+        add_collisions(impulse, position, self._near)
         for apply in self._forces:
             apply(self._round_index, position, velocity, impulse)
         velocity += impulse
@@ -61,19 +62,18 @@ class NumpyStepper:
         self._round_index += 1
 
 
-def add_collisions(impulse: Floats, position: Floats, first: Indices, second: Indices) -> None:
-    """Add the subtotal of collision forces fc(i, k) = (c_k − c_i) · min(0, 1 − 4/d²) of one table's near pairs.
+def add_collisions(impulse: Floats, position: Floats, near: NearList) -> None:
+    """Add collision forces fc(i, k) = (c_k − c_i) · min(0, 1 − 4/d²), the subtotal of one table after the other.
 
     Args:
         impulse: changed in place, (3, n_atoms).
         position: atom centres [length], (3, n_atoms).
-        first: lower atom of each pair that may touch; sorted by (first, second), (n_pairs,).
-        second: higher atom of each pair, (n_pairs,).
+        near: the pairs that may touch, up to date.
     """
-    if not first.size:
+    if not near.first.size:
         return
-    difference = np.take(position, second, axis=1)
-    difference -= np.take(position, first, axis=1)
+    difference = position.take(near.second, axis=1)
+    difference -= position.take(near.first, axis=1)
     squared = difference * difference
     distance_squared = (squared[0] + squared[1]) + squared[2]
     touching = np.flatnonzero(~(distance_squared >= CONTACT_SQUARED))
@@ -81,4 +81,8 @@ def add_collisions(impulse: Floats, position: Floats, first: Indices, second: In
         return
     inverse = 1.0 / distance_squared[touching]
     force = np.minimum(0.0, 1.0 - CONTACT_SQUARED * inverse) * difference[:, touching]
-    impulse += Scatter(first[touching], second[touching], impulse.shape[1]).total(force)
+    first, second = near.first[touching], near.second[touching]
+    for start, stop in pairwise(touching.searchsorted(near.bounds).tolist()):
+        if start < stop:
+            scatter = Scatter(first[start:stop], second[start:stop], impulse.shape[1])
+            impulse += scatter.total(force[:, start:stop])

@@ -47,11 +47,7 @@ def fill(row: Any, frame: Frame) -> None:
     """
     if not frame.position.shape == frame.velocity.shape == row["position"].shape:
         raise ValueError(f"a frame of shape {frame.position.shape} in a trajectory of {row['position'].shape}")
-    series = row["series"]
-    series["round"] = frame.round_index
-    series["digest"] = frame.digest
-    for name in OBSERVABLES:
-        series[name] = getattr(frame.observables, name)
+    row["series"] = (frame.round_index, frame.digest, *(getattr(frame.observables, name) for name in OBSERVABLES))
     row["position"] = frame.position
     row["velocity"] = frame.velocity
 

@@ -10,7 +10,7 @@ import pytest
 from support.running import atoms_at, compiled
 
 from atomsim.core import bonds
-from atomsim.core.bonds import bond_forms
+from atomsim.core.bonds import bond_forms, joined
 from atomsim.core.model import BondTable, Floats, Indices, Origin
 
 ORIGIN = Origin("bonds", "b", "<scene>", 1)
@@ -102,6 +102,69 @@ def test_a_long_rod_is_cut_into_tiles() -> None:
     (form,) = bond_forms(LONG_ROD)
     assert isinstance(form, bonds.DenseForm)
     assert len(form._tiles) > 1
+
+
+def shifted(table: BondTable, by: int) -> BondTable:
+    return BondTable(ORIGIN, table.first + by, table.second + by, table.rest_squared)
+
+
+def pairs_of(table: BondTable) -> list[tuple[int, int, float]]:
+    return list(zip(table.first.tolist(), table.second.tolist(), table.rest_squared.tolist(), strict=True))
+
+
+def test_tables_that_share_no_atom_are_joined() -> None:
+    one, other = shifted(NEARLY_ALL, 40), NEARLY_ALL
+    (both,) = joined([one, other])
+    assert pairs_of(both) == sorted(pairs_of(one) + pairs_of(other))
+
+
+def test_tables_that_meet_on_an_atom_stay_in_order() -> None:
+    """The third would fit to the first, but the second comes between them."""
+    first, second, third = ROD, shifted(ROD, 69), shifted(ROD, 200)
+    assert [pairs_of(table) for table in joined([first, second, third])] == [
+        pairs_of(first),
+        sorted(pairs_of(second) + pairs_of(third)),
+    ]
+    nothing = BondTable(ORIGIN, ROD.first[:0], ROD.second[:0], ROD.rest_squared[:0])
+    assert joined([first, nothing])[0] is first
+    assert joined([]) == []
+
+
+def test_equal_bodies_side_by_side_are_computed_at_once() -> None:
+    (both,) = joined([ROD, shifted(ROD, 70)])
+    (form,) = bond_forms(both)
+    assert (form.name, form.atoms) == ("dense", slice(0, 140))
+    position = np.random.default_rng(5).normal(size=(3, 140))
+    assert np.array_equal(subtotal(both, position), in_plain_loops(both, position))
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        [shifted(ROD, 71)],  # an idle atom between
+        [shifted(NEARLY_ALL, 70)],  # another size
+        [shifted(SURFACE, 70)],  # not dense
+        [shifted(LONG_ROD, 70), shifted(LONG_ROD, 300)],  # too large for one tile
+    ],
+)
+def test_other_bodies_are_not(others: list[BondTable]) -> None:
+    (both,) = joined([ROD, *others])
+    assert len(bond_forms(both)) == 1 + len(others)
+    position = np.random.default_rng(5).normal(size=(3, int(both.second.max()) + 1))
+    assert np.array_equal(subtotal(both, position), in_plain_loops(both, position))
+
+
+def test_many_small_bodies_share_a_form() -> None:
+    sizes = [3, 4, 5] * 50
+    starts = np.cumsum([0, *sizes])
+    bodies = [
+        BondTable(ORIGIN, *(ends + start for ends in np.triu_indices(size, 1)), np.ones(size * (size - 1) // 2))
+        for size, start in zip(sizes, starts, strict=False)
+    ]
+    (all_of_them,) = joined([*bodies, shifted(ROD, 700)])
+    assert forms_of(all_of_them) == ["general", "dense"]
+    position = np.random.default_rng(6).normal(size=(3, 770))
+    assert np.array_equal(subtotal(all_of_them, position), in_plain_loops(all_of_them, position))
 
 
 def test_pairs_between_two_resting_atoms_are_left_out() -> None:

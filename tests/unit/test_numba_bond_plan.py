@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from atomsim.core.model import BondTable, Indices, Origin
+from atomsim.core.numba_backend import bond_plan
 from atomsim.core.numba_backend.bond_plan import plan_bonds
 from atomsim.core.numba_backend.records import LANES, UNBOUND, Bonds
 
@@ -50,6 +52,14 @@ def test_all_pairs_of_a_string_are_one_tile() -> None:
     assert plan.pass_partner.tolist() == list(range(100, 170))
     assert plan.row_slot.size == 0
     assert bonds_in(plan, 100) == both_ways(all_pairs(70))
+
+
+def test_how_many_are_laid_out_at_a_time_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = plan_bonds([all_pairs(200)], range(200), NONE, margin=300)
+    monkeypatch.setattr(bond_plan, "PART_ENTRIES", 1000)
+    in_parts = plan_bonds([all_pairs(200)], range(200), NONE, margin=300)
+    for one, other in zip(whole, in_parts, strict=True):
+        assert np.array_equal(one, other)
 
 
 def test_neighbours_in_a_long_string_are_bands() -> None:

@@ -31,6 +31,16 @@ def test_frames_are_the_first_the_multiples_and_the_last() -> None:
     assert rounds_of(5, 5, start=7) == [7]
 
 
+def test_reports_do_not_cut_short_stretches_ever_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames end a stretch; the next one begins as long as stretches have proved to be quick."""
+    monkeypatch.setattr("atomsim.core.simulate.REPORT_SECONDS", 1e9)
+    model, state = falling()
+    heard: list[int] = []
+    for _ in simulate(model, state, 40, 10, report=heard.append):
+        pass
+    assert heard == [0, 1, 3, 7, 10, 18, 20, 30, 40]
+
+
 def test_a_frame_is_what_was_computed() -> None:
     model, state = falling()
     *_, frame = simulate(model, state, 20)

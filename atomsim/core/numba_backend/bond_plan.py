@@ -9,6 +9,9 @@ import numpy as np
 from atomsim.core.model import BondTable, Floats, Indices
 from atomsim.core.numba_backend.records import LANES, UNBOUND, Bonds
 
+PART_ENTRIES = 1 << 20
+"""Bonds laid out at a time, each seen from both of its atoms: some tens of megabytes."""
+
 PASS_ENTRIES = 12
 """A pass over a tile takes as long as so many entries of rows."""
 
@@ -24,16 +27,28 @@ def plan_bonds(tables: Sequence[BondTable], atoms: range, held: Indices, margin:
     """
     layout = _Layout(margin)
     for table in tables:
-        layout.add_table(*_seen_from(table, atoms, held), _cuts(table))
+        cuts = _cuts(table)
+        for part in _parts(table, atoms):
+            layout.add_tiles(*_seen_from(table, part, held), cuts)
+        layout.end_table()
     return layout.finish()
+
+
+def _parts(table: BondTable, atoms: range) -> Iterator[range]:
+    """Cut atoms into parts of whole tiles, few enough to be laid out in little memory."""
+    n_parts = 1 + 2 * table.first.size // PART_ENTRIES
+    n_atoms = LANES * (1 + len(atoms) // (LANES * n_parts))
+    yield from (atoms[start : start + n_atoms] for start in range(0, len(atoms), n_atoms))
 
 
 def _seen_from(table: BondTable, atoms: range, held: Indices) -> tuple[Indices, Indices, Floats]:
     """Return the bonds of some atoms as (atom, partner, r²), sorted by (atom, partner)."""
-    atom = np.concatenate((table.second, table.first))  # lower partners first; each half is sorted by partner
-    partner = np.concatenate((table.first, table.second))
-    rest_squared = np.concatenate((table.rest_squared, table.rest_squared))
-    wanted = np.flatnonzero((atom >= atoms.start) & (atom < atoms.stop) & ~np.isin(atom, held))
+    above = slice(*np.searchsorted(table.first, (atoms.start, atoms.stop)).tolist())
+    below = np.flatnonzero((table.second >= atoms.start) & (table.second < atoms.stop))
+    atom = np.concatenate((table.second[below], table.first[above]))  # lower partners first
+    partner = np.concatenate((table.first[below], table.second[above]))  # each half is sorted by partner
+    rest_squared = np.concatenate((table.rest_squared[below], table.rest_squared[above]))
+    wanted = np.flatnonzero(~np.isin(atom, held))
     order = wanted[np.argsort(atom[wanted], kind="stable")]
     return atom[order], partner[order], rest_squared[order]
 
@@ -60,10 +75,13 @@ class _Layout:
         self._entry_partner: list[Indices] = []
         self._entry_rest_squared: list[Floats] = []
 
-    def add_table(self, atom: Indices, partner: Indices, rest_squared: Floats, cuts: Indices) -> None:
-        """Lay out the bonds of one table, tile by tile."""
+    def add_tiles(self, atom: Indices, partner: Indices, rest_squared: Floats, cuts: Indices) -> None:
+        """Lay out bonds of one table, tile by tile."""
         for start, part in _tiles(atom, cuts):
             self._add_tile(start, atom[part], partner[part], rest_squared[part])
+
+    def end_table(self) -> None:
+        """Let what follows belong to the next table."""
         self._table_first_tile.append(len(self._tile_slot))
         self._table_first_row.append(self._n_rows)
 

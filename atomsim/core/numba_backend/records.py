@@ -170,6 +170,7 @@ class Watch(NamedTuple):
         run_stop: one past the end of each run.
         made_at: positions when the lists were made [length], (3, n_slots).
         skin: how much further than contact they look [length], (1,).
+        widest_skin: how much further they may look [length].
         n_rounds: rounds since then, (1,).
     """
 
@@ -177,4 +178,5 @@ class Watch(NamedTuple):
     run_stop: Indices
     made_at: Floats
     skin: Floats
+    widest_skin: float
     n_rounds: Indices

@@ -133,7 +133,8 @@ def _is_stale(watch: Watch, position: Floats) -> bool:
 def _renew(position: Floats, watch: Watch, queries: Queries, grids: Grids, near: NearPairs) -> bool:
     """Make the list of near pairs of all atoms anew; return whether it had room for them."""
     n_near = near.row_first_entry[near.table_first_row[-1]]
-    watch.skin[0] = better_skin(watch.skin[0], watch.n_rounds[0], MAKING_COST * queries.cost[0], n_near)
+    making = MAKING_COST * queries.cost[0]
+    watch.skin[0] = better_skin(watch.skin[0], watch.widest_skin, watch.n_rounds[0], making, n_near)
     watch.n_rounds[0] = 0
     for component in range(3):
         for slot in range(position.shape[1]):

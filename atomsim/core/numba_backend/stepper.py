@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from atomsim.core.collisions import SKIN, better_skin, involved_atoms
+from atomsim.core.collisions import SKIN, better_skin, involved_atoms, widest_skin
 from atomsim.core.forces import held_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Model, State
@@ -50,7 +50,8 @@ class NumbaStepper:
         forces = in_order(model.forces)
         self._forces = plan_forces(forces, self._margin)
         self._pushes = Pushes(forces)
-        self._watch = Watch(_NONE, _NONE, np.zeros_like(here), np.array([skin]), np.zeros(1, dtype=np.int64))
+        widest, n_rounds = widest_skin(model.collisions), np.zeros(1, dtype=np.int64)
+        self._watch = Watch(_NONE, _NONE, np.zeros_like(here), np.array([skin]), widest, n_rounds)
         self._is_stale = bool(model.collisions)
         self._grids = plan_grids(model.collisions, self._margin)
         edges = [model.n_atoms * number // threads for number in range(threads + 1)]
@@ -87,7 +88,7 @@ class NumbaStepper:
         if n_rounds[0]:
             n_near = sum(share.n_near for share in self._shares)
             making = MAKING_COST * sum(share.search_cost for share in self._shares)
-            skin[0] = better_skin(skin[0], n_rounds[0], making, n_near)
+            skin[0] = better_skin(skin[0], self._watch.widest_skin, n_rounds[0], making, n_near)
             n_rounds[0] = 0
         position, cutoff = self._motion.here, 2.0 + float(skin[0])
         np.copyto(self._watch.made_at, position)
