@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from atomsim.core.bonds import Scatter, bond_forms, joined
+from atomsim.core.bond_forms import Scatter
+from atomsim.core.bonds import bond_forms, joined
 from atomsim.core.collisions import CONTACT_SQUARED, NearList
 from atomsim.core.forces import held_atoms, prepare_forces
 from atomsim.core.model import Floats, Model, State

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from atomsim.cli import main
-from atomsim.core import bonds, collisions, stepper
+from atomsim.core import bond_forms, collisions, stepper
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests" / "golden"
@@ -40,11 +40,11 @@ def test_every_shipped_scene_has_a_small_golden():
 
 
 def test_a_bond_law_changed_by_one_part_in_a_billion_is_caught(cli, monkeypatch):
-    def changed(weight, rest_squared, law=bonds.weigh_bonds):
+    def changed(weight, rest_squared, law=bond_forms.weigh_bonds):
         law(weight, rest_squared)
         weight *= 1.0 + 1e-9
 
-    monkeypatch.setattr(bonds, "weigh_bonds", changed)
+    monkeypatch.setattr(bond_forms, "weigh_bonds", changed)
     code, out, err = cli("golden", "check", ROOT / "scenes" / "threads.yaml", "--into", GOLDEN)
     assert code == 1
     assert re.search(

@@ -10,6 +10,7 @@ import pytest
 from support.running import atoms_at, compiled
 
 from atomsim.core import bonds
+from atomsim.core.bond_forms import DenseForm
 from atomsim.core.bonds import bond_forms, joined
 from atomsim.core.model import BondTable, Floats, Indices, Origin
 
@@ -100,7 +101,7 @@ def test_every_form_is_the_plain_loop(table: BondTable, thresholds: dict[str, fl
 
 def test_a_long_rod_is_cut_into_tiles() -> None:
     (form,) = bond_forms(LONG_ROD)
-    assert isinstance(form, bonds.DenseForm)
+    assert isinstance(form, DenseForm)
     assert len(form._tiles) > 1
 
 
