@@ -211,7 +211,8 @@ def _record(recorder: Recorder, model: Model, first: State, backend: Backend, re
             watch.see(frame)
             state, digest = frame.state, frame.digest
     except StopWishedError:
-        end = End("interrupted")
+        if state.round_index < header.rounds:  # else a resumed run had nothing left to do but to build its file
+            end = End("interrupted")
     except BlowUpError as error:
         end, blow_up = End("blew up", str(error)), error
     recorder.finish(end)
