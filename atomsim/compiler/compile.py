@@ -52,7 +52,7 @@ from atomsim.scene.language import (
     Tether,
     Torque,
 )
-from atomsim.scene.source import Path, Source
+from atomsim.scene.source import KeyPath, Source
 
 LARGEST = 1e150
 """The largest coordinate, velocity or desired distance: squares of differences stay finite."""
@@ -233,7 +233,7 @@ class _Compiler:
         rest_squared = self._rest_squared(path, force.rest, initial)
         return TetherForce(origin, atoms, force.target, _read_only(rest_squared))
 
-    def _rest_squared(self, path: Path, rest: Rest, initial: Floats) -> Floats:
+    def _rest_squared(self, path: KeyPath, rest: Rest, initial: Floats) -> Floats:
         """Return r² per pair: the squared initial distance, without the detour through the root, or a number's."""
         if rest == "initial":
             return initial
@@ -241,7 +241,7 @@ class _Compiler:
             self._complain((*path, "rest"), f"is {TOO_LARGE}")
         return np.full(initial.shape, rest * rest)
 
-    def _found_coincident(self, path: Path, first: Indices, second: Indices, what: str) -> bool:
+    def _found_coincident(self, path: KeyPath, first: Indices, second: Indices, what: str) -> bool:
         """Complain of a pair at distance zero, which has no direction to push in; before or after jitter."""
         for position in (self._placed, self._position):
             same = np.flatnonzero(pair_squares(position.T, first, second) == 0.0)
@@ -294,15 +294,15 @@ class _Compiler:
         mark = self._source.mark((section, name))
         return Origin(section, name, mark.file, mark.line)
 
-    def _complain(self, path: Path, message: str) -> None:
+    def _complain(self, path: KeyPath, message: str) -> None:
         self._problems.append(self._source.problem(path, message))
 
-    def _complain_if(self, path: Path, message: str | None) -> None:
+    def _complain_if(self, path: KeyPath, message: str | None) -> None:
         if message is not None:
             self._complain(path, message)
 
     def _complain_of_selection(
-        self, path: Path, declaration: Bonds | Collisions | Force, error: SelectionError
+        self, path: KeyPath, declaration: Bonds | Collisions | Force, error: SelectionError
     ) -> None:
         """Complain at the place in a declaration where the selection was written."""
         self._complain((*path, *place_of(error.expression, declaration)), str(error))
@@ -326,7 +326,7 @@ def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
     return position + jitter.amplitude * noise.reshape(position.shape)
 
 
-def _why_nothing_collides(table: CollisionTable) -> tuple[Path, str]:
+def _why_nothing_collides(table: CollisionTable) -> tuple[KeyPath, str]:
     """Return the key to blame for a table without pairs, and the reason."""
     gaps = [block.min_gap for block in table.blocks if isinstance(block, Within) and block.atoms.size > 1]
     if gaps:
@@ -334,7 +334,7 @@ def _why_nothing_collides(table: CollisionTable) -> tuple[Path, str]:
     return (), "there are no two different atoms here"
 
 
-def _parts(key: str) -> Path:
+def _parts(key: str) -> KeyPath:
     return tuple(int(part) if part.isdigit() else part for part in key.split("."))
 
 

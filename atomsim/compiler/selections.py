@@ -13,7 +13,7 @@ from atomsim.core.memory import free_memory
 from atomsim.core.model import Indices
 from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
 from atomsim.scene.selection import parse_selection
-from atomsim.scene.source import Path
+from atomsim.scene.source import KeyPath
 
 LARGE = 1 << 26
 """Bytes of selections from which on it is worth asking whether more will fit."""
@@ -151,13 +151,13 @@ def _along_axis(axis: int | slice, count: int, expression: str, group: str) -> I
     return np.array([axis % count])
 
 
-def place_of(expression: str, declaration: Declaration) -> Path:
+def place_of(expression: str, declaration: Declaration) -> KeyPath:
     """Return where in a declaration a selection was written, as a path inside it; empty if nowhere."""
     places = (_place_in(getattr(declaration, key, None), expression, (key,)) for key in _SELECTION_KEYS)
     return next(filter(None, places), ())
 
 
-def _place_in(value: Any, expression: str, path: Path) -> Path | None:
+def _place_in(value: Any, expression: str, path: KeyPath) -> KeyPath | None:
     """Look for an expression in selections as deeply nested as a declaration nests them."""
     if value in (expression, (expression,)):
         return path

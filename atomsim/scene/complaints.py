@@ -14,7 +14,7 @@ from atomsim.scene.field_docs import declaration_at, declared_in, descriptions, 
 from atomsim.scene.overrides import is_setting
 from atomsim.scene.scalars import is_number
 from atomsim.scene.schema import field_docs
-from atomsim.scene.source import Path, Source
+from atomsim.scene.source import KeyPath, Source
 from atomsim.scene.wording import NEEDS_BRACKETS, either, meant, readable, shown, suggestion
 
 _TAGGED_SECTIONS = {"groups": "shape", "bonds": "rule", "forces": "kind"}
@@ -95,7 +95,7 @@ _NEEDS = {
 """What a value needs, by pydantic's name of the finding."""
 
 
-def _path(found: ErrorDetails, data: Any) -> Path:
+def _path(found: ErrorDetails, data: Any) -> KeyPath:
     """Return where the user wrote it: without pydantic's marks of keys, chosen words and items made of scalars."""
     loc = found["loc"][:-1] if found["type"] == "name" else found["loc"]
     if len(loc) > 2 and loc[0] in _TAGGED_SECTIONS:
@@ -110,21 +110,21 @@ def _path(found: ErrorDetails, data: Any) -> Path:
     return tuple(path)
 
 
-def _value(path: Path, data: Any) -> Any:
+def _value(path: KeyPath, data: Any) -> Any:
     """Return the value at a path, None where there is none."""
     for part in path:
         data = data.get(part) if isinstance(data, dict) else data[part]
     return data
 
 
-def _missing(path: Path, data: Any) -> str:
+def _missing(path: KeyPath, data: Any) -> str:
     declaration = declaration_at(path[:-1], data)
     said = descriptions(declaration)[str(path[-1])].rstrip(".") if declaration is not None else ""
     is_null = path[-1] in _value(path[:-1], data)
     return f"needs a value (got null): {said}" if is_null else f"missing: {said}"
 
 
-def _form(found: ErrorDetails, path: Path, data: Any) -> str:
+def _form(found: ErrorDetails, path: KeyPath, data: Any) -> str:
     """Return how a list is written, or at least how long it is."""
     declaration = declaration_at(path[:-1], data)
     if declaration is not None:
@@ -137,7 +137,7 @@ def _form(found: ErrorDetails, path: Path, data: Any) -> str:
     return "a list"
 
 
-def _unknown_key(path: Path, data: Any, source: Source) -> str:
+def _unknown_key(path: KeyPath, data: Any, source: Source) -> str:
     key = str(path[-1])
     declaration = declaration_at(path[:-1], data)
     keys = list(descriptions(declaration)) if declaration is not None else []
@@ -160,7 +160,7 @@ def _unknown_key(path: Path, data: Any, source: Source) -> str:
     return message + meant(key, keys, f"the keys of {kind} {word} are")
 
 
-def _misnamed(path: Path, data: Any, source: Source) -> str:
+def _misnamed(path: KeyPath, data: Any, source: Source) -> str:
     """Say which declaration of another file was probably meant to be changed, where a name is new."""
     here = source.mark(path).file
     section = path[:-1]
@@ -169,7 +169,7 @@ def _misnamed(path: Path, data: Any, source: Source) -> str:
     return f"; did you mean `{readable(close)}`?" if close is not None else ""
 
 
-def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) -> Problem:
+def _unknown_word(found: ErrorDetails, path: KeyPath, data: Any, source: Source) -> Problem:
     """Complain about the word that chooses a declaration: the shape, rule or kind."""
     key = found["ctx"]["discriminator"].strip("'")
     words = list(words_in(str(path[0])))
@@ -183,7 +183,7 @@ def _unknown_word(found: ErrorDetails, path: Path, data: Any, source: Source) ->
     return source.problem((*path, key), f"unknown {key} {shown(value)}; {remedy}")
 
 
-def _keys(path: Path, data: Any) -> str:
+def _keys(path: KeyPath, data: Any) -> str:
     """Return how a mapping is written."""
     declaration = declaration_at(path, data)
     if declaration is not None:
@@ -193,13 +193,13 @@ def _keys(path: Path, data: Any) -> str:
     return "of names, `name: …`"
 
 
-def _indentation(path: Path) -> str:
+def _indentation(path: KeyPath) -> str:
     """Say where a key belongs that stands where a name is expected."""
     is_key = any(path[-1] in declaration.model_fields for declaration in declared_in(str(path[0])))
     return "; indent it under the name" if len(path) == 2 and is_key else ""
 
 
-def _hint(kind: str, path: Path, value: Any) -> str:
+def _hint(kind: str, path: KeyPath, value: Any) -> str:
     """Say how to write what was probably meant."""
     if kind == "string_type" and len(path) == 1 and not isinstance(value, (dict, list)):
         return f'; write "{shown(value)}"'

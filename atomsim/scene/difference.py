@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from atomsim.scene.language import Scene
-from atomsim.scene.source import Path, dotted
+from atomsim.scene.source import KeyPath, dotted
 from atomsim.scene.wording import shown
 
 ONLY_WORDS_AND_PICTURES = {"title", "description", "rounds", "render"}
@@ -28,7 +28,7 @@ def differences(before: Scene, now: Scene) -> list[str]:
     return lines if more <= 0 else [*lines[:MOST_LINES], f"and {more} more"]
 
 
-def _differences(path: Path, before: Any, now: Any) -> list[str]:
+def _differences(path: KeyPath, before: Any, now: Any) -> list[str]:
     if not isinstance(before, dict) or not isinstance(now, dict):
         return [] if before == now else [f"{dotted(path)}: {shown(before)} before, {shown(now)} now"]
     lines = [f"{dotted((*path, key))}: no longer there" for key in before if key not in now]

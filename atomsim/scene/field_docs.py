@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Annotated, Any, TypeGuard, get_args, get_origin
 
 from atomsim.scene.language import Declaration, Scene
-from atomsim.scene.source import Path
+from atomsim.scene.source import KeyPath
 
 
 @functools.cache
@@ -67,7 +67,7 @@ def is_mapping(declaration: type[Declaration], key: str) -> bool:
     return any(get_origin(option) is dict or _is_declaration(option) for option in options)
 
 
-def declaration_at(path: Path, data: Any) -> type[Declaration] | None:
+def declaration_at(path: KeyPath, data: Any) -> type[Declaration] | None:
     """Return the declaration that a path leads to, as far as the data tell; None for lists, mappings and scalars.
 
     Args:

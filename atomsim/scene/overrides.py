@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Iterable
 
 from atomsim.errors import Mark, Problem, SceneError
-from atomsim.scene.source import Path, dotted
+from atomsim.scene.source import KeyPath, dotted
 from atomsim.scene.strict_yaml import read_yaml
 from atomsim.scene.tree import Node
 from atomsim.scene.wording import meant, readable, shown, suggestion
@@ -68,7 +68,7 @@ class _Setting:
         """Return a tree in which the path leads to the value."""
         return self._set(self._root, (), self._parts)
 
-    def _set(self, at: Node, done: Path, rest: tuple[str, ...]) -> Node:
+    def _set(self, at: Node, done: KeyPath, rest: tuple[str, ...]) -> Node:
         """Return a copy of the value at the path `done` in which `rest` leads to the new value."""
         key, *deeper = rest
         if isinstance(at.value, dict):
@@ -79,7 +79,7 @@ class _Setting:
             return Node([*at.value[:index], item, *at.value[index + 1 :]], at.mark)
         raise self._refused((*done, key), f"`{dotted(done)}` is {shown(at.value)}; there is nothing inside")
 
-    def _set_key(self, entries: dict[str, Node], path: Path, deeper: tuple[str, ...]) -> dict[str, Node]:
+    def _set_key(self, entries: dict[str, Node], path: KeyPath, deeper: tuple[str, ...]) -> dict[str, Node]:
         key = str(path[-1])
         known = entries.get(key)
         if known is not None and known.value is not None:
@@ -95,7 +95,7 @@ class _Setting:
         self._require_mapping(entries, path)
         return {**kept, key: self._set(Node({}, self._mark), path, deeper)}
 
-    def _require_mapping(self, entries: dict[str, Node], path: Path) -> None:
+    def _require_mapping(self, entries: dict[str, Node], path: KeyPath) -> None:
         """Refuse to go on into what is not written, unless the language has a mapping there."""
         from atomsim.scene.field_docs import declaration_at, descriptions, is_mapping  # only a few settings
         from atomsim.scene.schema import field_docs  # need them
@@ -112,14 +112,14 @@ class _Setting:
             form = field_docs()[declaration.__name__][key].type
             raise self._refused(path, f"`{key}` is not written; set it whole, as `{dotted(path)}={form}`")
 
-    def _index(self, key: str, n_items: int, done: Path) -> int:
+    def _index(self, key: str, n_items: int, done: KeyPath) -> int:
         if key.isascii() and key.isdecimal() and len(key) < 10 and int(key) < n_items:
             return int(key)
         indices = f"0 to {n_items - 1}" if n_items else "none, for it is empty"
         raise self._refused((*done, key), f"`{dotted(done)}` is a list; its indices are {indices}")
 
-    def _not_there(self, path: Path, remedy: str) -> SceneError:
+    def _not_there(self, path: KeyPath, remedy: str) -> SceneError:
         return self._refused(path, f"there is no `{readable(str(path[-1]))}`; {remedy}")
 
-    def _refused(self, path: Path, message: str) -> SceneError:
+    def _refused(self, path: KeyPath, message: str) -> SceneError:
         return SceneError([Problem(self._mark, dotted(path), message)])

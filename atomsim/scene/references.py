@@ -8,7 +8,7 @@ from typing import Any
 
 from atomsim.errors import Problem
 from atomsim.scene.selection import SelectionSyntaxError, parse_selection
-from atomsim.scene.source import Path, Source, dotted
+from atomsim.scene.source import KeyPath, Source, dotted
 from atomsim.scene.tree import Node
 from atomsim.scene.wording import meant, readable
 
@@ -51,7 +51,7 @@ def check_deletions(root: Node) -> list[Problem]:
     return problems
 
 
-def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
+def _selected(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     """Every group that a selection names."""
     for section in ("bonds", "collisions", "forces"):
         for name, declaration in _mapping(data.get(section)).items():
@@ -61,13 +61,13 @@ def _selected(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
                         yield path, parse_selection(text).group
 
 
-def _colored(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
+def _colored(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     for text in _mapping(_mapping(data.get("render")).get("colors")):
         with suppress(SelectionSyntaxError):
             yield ("render", "colors", text), parse_selection(text).group
 
 
-def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:
+def _texts(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
     """Every text in a text or in nested lists of texts."""
     if isinstance(value, str):
         yield path, value

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from atomsim.errors import Mark, Problem
 from atomsim.scene.wording import readable
 
-Path = tuple[str | int, ...]
+KeyPath: TypeAlias = tuple[str | int, ...]
 """The keys and list indices that lead to a value: `("bonds", "right", "rule")`."""
 
 
-def dotted(path: Path) -> str:
+def dotted(path: KeyPath) -> str:
     """Write a path the way users do: `forces.weight.impulse.2`."""
     return ".".join(readable(str(part)) for part in path)
 
@@ -32,9 +33,9 @@ class Source:
     name: str = "<scene>"
     text: str = ""
     overrides: tuple[str, ...] = ()
-    marks: Mapping[Path, Mark] = field(default_factory=dict)
+    marks: Mapping[KeyPath, Mark] = field(default_factory=dict)
 
-    def mark(self, path: Path) -> Mark:
+    def mark(self, path: KeyPath) -> Mark:
         """Return the place of a value, or of the nearest enclosing value that was written down."""
         for length in range(len(path), -1, -1):
             mark = self.marks.get(path[:length])
@@ -42,6 +43,6 @@ class Source:
                 return mark
         return Mark(self.name, 1, 1)
 
-    def problem(self, path: Path, message: str) -> Problem:
+    def problem(self, path: KeyPath, message: str) -> Problem:
         """Describe a mistake in the value at a path."""
         return Problem(self.mark(path), dotted(path), message)

@@ -9,7 +9,7 @@ import yaml
 
 from atomsim.errors import Mark, Problem, SceneError
 from atomsim.scene.scalars import is_number, resolve
-from atomsim.scene.source import Path, dotted
+from atomsim.scene.source import KeyPath, dotted
 from atomsim.scene.syntax_errors import explain
 from atomsim.scene.tree import Node
 from atomsim.scene.wording import NEEDS_BRACKETS, readable
@@ -26,7 +26,7 @@ Place = Callable[[int, int], Mark]
 """Makes a mark of a line and a column, both counted from 1."""
 
 
-def read_yaml(text: str, place: Place, at: Path = ()) -> Node:
+def read_yaml(text: str, place: Place, at: KeyPath = ()) -> Node:
     """Read a YAML document into a tree.
 
     Args:
@@ -61,7 +61,7 @@ class _Reader:
         self._anchors: dict[str, Node | None] = {}
         self._n_values = 0
 
-    def document(self, at: Path) -> Node:
+    def document(self, at: KeyPath) -> Node:
         """Read the one document of the text."""
         next(self._events)
         start = next(self._events)
@@ -84,7 +84,7 @@ class _Reader:
             place = self._place(mark.line + 1, mark.column + 1) if mark is not None else self._place(1, 1)
             raise SceneError([*self._problems, Problem(place, "", explain(error, text))]) from None
 
-    def _node(self, event: yaml.Event, path: Path) -> Node:
+    def _node(self, event: yaml.Event, path: KeyPath) -> Node:
         """Read the value that an event begins."""
         self._count(event, path, 1, len(path))
         mark = self._mark(event)
@@ -106,7 +106,7 @@ class _Reader:
             self._anchors[event.anchor] = node
         return node
 
-    def _scalar(self, event: yaml.ScalarEvent, path: Path) -> str | int | float | bool | None:
+    def _scalar(self, event: yaml.ScalarEvent, path: KeyPath) -> str | int | float | bool | None:
         if event.implicit[0]:
             return resolve(event.value)
         unprintable = _UNPRINTABLE.search(event.value)
@@ -114,13 +114,13 @@ class _Reader:
             self._refuse(event, path, f"the character U+{ord(unprintable.group()):04X} cannot stand in a text")
         return str(event.value)
 
-    def _list(self, path: Path) -> list[Node]:
+    def _list(self, path: KeyPath) -> list[Node]:
         items: list[Node] = []
         while not isinstance(event := next(self._events), yaml.SequenceEndEvent):
             items.append(self._node(event, (*path, len(items))))
         return items
 
-    def _mapping(self, path: Path) -> dict[str, Node]:
+    def _mapping(self, path: KeyPath) -> dict[str, Node]:
         entries: dict[str, Node] = {}
         while not isinstance(event := next(self._events), yaml.MappingEndEvent):
             key = self._key(event, path)
@@ -134,7 +134,7 @@ class _Reader:
                 entries[key] = Node(node.value, self._mark(event))
         return entries
 
-    def _key(self, event: yaml.Event, path: Path) -> str:
+    def _key(self, event: yaml.Event, path: KeyPath) -> str:
         """Read a key; whatever it looks like, it is text."""
         if not isinstance(event, yaml.ScalarEvent):
             raise self._refused(event, path, "a key must be a plain word")
@@ -143,7 +143,7 @@ class _Reader:
             self._refuse(event, path, "merge keys `<<` are not part of the scene language; write the keys out")
         return str(event.value)
 
-    def _aliased(self, event: yaml.AliasEvent, path: Path) -> Node:
+    def _aliased(self, event: yaml.AliasEvent, path: KeyPath) -> Node:
         """Return what an alias repeats, marked at the alias."""
         name = str(event.anchor)
         if name not in self._anchors:
@@ -156,7 +156,7 @@ class _Reader:
         self._count(event, path, n_values - 1, len(path) + depth)
         return Node(node.value, self._mark(event))
 
-    def _count(self, event: yaml.Event, path: Path, n_values: int, depth: int) -> None:
+    def _count(self, event: yaml.Event, path: KeyPath, n_values: int, depth: int) -> None:
         """Stop before a text, however short, becomes more than memory holds."""
         self._n_values += n_values
         if self._n_values > MAX_VALUES:
@@ -168,10 +168,10 @@ class _Reader:
         start = event.start_mark
         return self._place(start.line + 1, start.column + 1) if start is not None else self._place(1, 1)
 
-    def _refuse(self, event: yaml.Event, path: Path, message: str) -> None:
+    def _refuse(self, event: yaml.Event, path: KeyPath, message: str) -> None:
         self._problems.append(Problem(self._mark(event), dotted(path), message))
 
-    def _refused(self, event: yaml.Event, path: Path, message: str) -> SceneError:
+    def _refused(self, event: yaml.Event, path: KeyPath, message: str) -> SceneError:
         self._refuse(event, path, message)
         return SceneError(self._problems)
 

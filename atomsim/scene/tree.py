@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from atomsim.errors import Mark
-from atomsim.scene.source import Path
+from atomsim.scene.source import KeyPath
 
 Scalar: TypeAlias = str | int | float | bool | None
 
@@ -81,13 +81,13 @@ def without_nulls(data: Any) -> Any:
     return data
 
 
-class Places(Mapping[Path, Mark]):
+class Places(Mapping[KeyPath, Mark]):
     """The place of every value of a tree by path, looked up in the tree itself."""
 
     def __init__(self, root: Node) -> None:
         self._root = root
 
-    def __getitem__(self, path: Path) -> Mark:
+    def __getitem__(self, path: KeyPath) -> Mark:
         node: Node | None = self._root
         for part in path:
             node = node.child(part) if node is not None else None
@@ -95,14 +95,14 @@ class Places(Mapping[Path, Mark]):
             raise KeyError(path)
         return node.mark
 
-    def __iter__(self) -> Iterator[Path]:
+    def __iter__(self) -> Iterator[KeyPath]:
         return _paths(self._root, ())
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
 
-def _paths(node: Node, path: Path) -> Iterator[Path]:
+def _paths(node: Node, path: KeyPath) -> Iterator[KeyPath]:
     yield path
     children = node.value.items() if isinstance(node.value, dict) else ()
     items = enumerate(node.value) if isinstance(node.value, list) else ()

@@ -10,7 +10,7 @@ import yaml
 
 from atomsim.errors import Mark, SceneError
 from atomsim.scene import strict_yaml
-from atomsim.scene.source import Path
+from atomsim.scene.source import KeyPath
 from atomsim.scene.strict_yaml import MAX_CHARACTERS, MAX_DEPTH, MAX_VALUES, read_yaml
 from atomsim.scene.tree import Node, Places
 
@@ -97,7 +97,7 @@ groups:
     - b: 1
 ünï: x
 """
-PLACES: dict[Path, tuple[int, int]] = {
+PLACES: dict[KeyPath, tuple[int, int]] = {
     (): (1, 1),
     ("groups",): (2, 1),
     ("groups", "ring"): (3, 3),
