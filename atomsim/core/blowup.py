@@ -12,7 +12,7 @@ from atomsim.core.energy import SLACK, EnergyBudget, total_energy
 from atomsim.core.forces import prepare_forces
 from atomsim.core.model import Floats, Frame, Indices, Model, Observables, Origin, State, atom_name
 from atomsim.core.near import squared_distance
-from atomsim.core.stiffness import largest_time_step
+from atomsim.core.stiffness import is_damped_too_much, largest_time_step
 
 FLOWN_APART = 1e6
 """An atom that moves further than this in one round [length] is no longer part of anything."""
@@ -61,25 +61,29 @@ def explain(model: Model, first: State, before: State, after: State, lost: str =
     with np.errstate(all="ignore"):
         atom = _first_lost(after)
         size, origin, partner = max(_pushes(model, before, atom), key=lambda push: push[0], default=(0.0, None, None))
-        limits = [largest_time_step(model, state) for state in (first, before)]
     lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} {lost}"]
     if origin is not None:
         against = f", against {atom_name(partner, model.groups)}" if partner is not None else ""
         lines.append(f"  pushed hardest by {origin}{against}, with an impulse of {size:.3g} in one round")
-    return "\n".join([*lines, *_remedy(model.time_step, *limits)])
+    return "\n".join([*lines, *_remedy(model, first, before)])
 
 
-def _remedy(time_step: float, at_first: float, just_before: float) -> list[str]:
+def _remedy(model: Model, first: State, before: State) -> list[str]:
     """Compare the time step with what the stiffness allowed at first and just before, and say what to change."""
-    if time_step >= min(at_first, just_before):
-        when, limit = ("of the scene", at_first) if time_step >= at_first else ("it had by then", just_before)
-        return [
-            f"  time_step is {time_step:g}; the stiffness {when} allows less than {limit:.3g}",
-            "  remedy: a smaller time_step, fewer bonds per atom, or damping",
-        ]
+    time_step, limit = model.time_step, math.inf
+    for when, state in (("of the scene", first), ("it had by then", before)):
+        limit = largest_time_step(model, state)
+        if time_step >= limit:
+            damping, less = "", ""
+            if is_damped_too_much(model, state):
+                damping, less = " with its damping", ", or less damping"
+            return [
+                f"  time_step is {time_step:g}; the stiffness {when} allows less than {limit:.3g}{damping}",
+                f"  remedy: a smaller time_step or fewer bonds per atom{less}",
+            ]
     return [
-        f"  time_step {time_step:g} is below {just_before:.3g}, the limit of the stiffness: look at speeds",
-        "  remedy: weaker external forces, lower velocities, or a smaller time_step",
+        f"  time_step {time_step:g} is below {limit:.3g}, the limit of the stiffness: look at speeds",
+        "  remedy: weaker external forces, lower velocities, more damping, or a smaller time_step",
     ]
 
 

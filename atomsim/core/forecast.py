@@ -10,7 +10,7 @@ from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Between, CollisionTable, Indices, Model, State, TorqueForce, Within, atom_name
 from atomsim.core.near import squared_distance
 from atomsim.core.observables import contact_potential
-from atomsim.core.stiffness import is_surely_stable, largest_time_step
+from atomsim.core.stiffness import is_damped_too_much, is_surely_stable, largest_time_step
 
 SHORTEST_LEVER = 1e-6
 """Atoms nearer than this to the axis of a torque lie on it [length]: what is left is rounding, or jitter."""
@@ -33,15 +33,16 @@ def forecast(model: Model, state: State) -> list[str]:
 
 
 def _instability(model: Model, state: State) -> list[str]:
-    """The undamped scheme is stable only for τ · λmax < 4."""
+    """The scheme is stable only for τ · λmax < 4."""
     if is_surely_stable(model, state):
         return []
     limit = largest_time_step(model, state)
     if model.time_step < limit:
         return []
+    damping = " with its damping" if is_damped_too_much(model, state) else ""
     return [
         f"time_step {model.time_step:g} is at or above {limit:.3g}, the largest that the stiffness of this scene "
-        f"allows; expect it to blow up{_advice(0.5 * limit)}"
+        f"allows{damping}; expect it to blow up{_advice(0.5 * limit)}"
     ]
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from atomsim.core.collisions import CONTACT_SQUARED, table_pairs_near
 from atomsim.core.forces import held_atoms
-from atomsim.core.model import Floats, Indices, Model, State, TetherForce
+from atomsim.core.model import DampingForce, Floats, Indices, Model, State, TetherForce
 from atomsim.core.near import STRETCH
 
 TOLERANCE = 1e-7
@@ -23,7 +24,7 @@ MOST_PULLS = 1 << 25
 
 
 def largest_time_step(model: Model, state: State) -> float:
-    """Return the time step from which on the undamped scheme is unstable: 4 / λmax of the stiffness at a state.
+    """Return the time step from which on the linearised scheme is unstable: 4 / λmax of the stiffness at a state.
 
     Limitations: the limit of a scene with millions of bonds may be a few per cent too high. The stiffness is that of
     the given shape; a scene that crowds atoms together later grows stiffer, by up to 2 for each contact of an atom.
@@ -44,11 +45,22 @@ def is_surely_stable(model: Model, state: State) -> bool:
 def largest_stiffness(model: Model, state: State) -> float:
     """Return the largest eigenvalue λmax of the linearised stiffness matrix K, by power iteration.
 
+    Damping makes a scene stiffer. A motion of stiffness λ in which each round takes the share m of the velocity,
+    v ← (1 − m)·v − λ·c, c ← c + τ·v, has a map with the determinant 1 − m and the trace 2 − m − τλ, so it is stable for
+    τλ < 4 − 2m. With an m for each atom, an eigenvalue of the map becomes −1 where 4 − 2M − τK is singular, so K is
+    taken relative to 1 − M/2: as (1 − M/2)^(−½) · K · (1 − M/2)^(−½).
+
     For a pair at distance d with desired distance r the potential (d² − r²)/2 − r² ln(d/r) has the stiffness
     1 + r²/d² along the pair and 1 − r²/d² across it. It is infinite where numbers are too large to tell.
     """
     with np.errstate(all="ignore"):
         return _largest_eigenvalue(_Springs(model, state))
+
+
+def is_damped_too_much(model: Model, state: State) -> bool:
+    """Return whether a time step that is too large would not be too large without damping."""
+    undamped = tuple(force for force in model.forces if not isinstance(force, DampingForce))
+    return undamped != model.forces and model.time_step < largest_time_step(replace(model, forces=undamped), state)
 
 
 def _largest_eigenvalue(springs: _Springs) -> float:
@@ -69,7 +81,10 @@ def _largest_eigenvalue(springs: _Springs) -> float:
 
 
 class _Springs:
-    """The stiffness matrix as what it does to a displacement; atoms that are held do not move."""
+    """The stiffness matrix, relative to what damping leaves, as what it does to a displacement.
+
+    Atoms that are held do not move.
+    """
 
     def __init__(self, model: Model, state: State) -> None:
         position = np.ascontiguousarray(state.position.T)
@@ -83,6 +98,8 @@ class _Springs:
             if isinstance(force, TetherForce)
         ]
         self._held = held_atoms(model.forces)
+        self._left = _left_by_damping(model, self._held)
+        self._scale = 1.0 / np.sqrt(self._left)
         self.n_atoms = model.n_atoms
         self.n_springs = sum(first.size for first, _, _ in self._pairs)
         self._kept = list(self._linearise()) if self.n_springs <= STRETCH else None
@@ -96,10 +113,11 @@ class _Springs:
             row += 2.0 * np.bincount(spring.second, weights=stiffest, minlength=self.n_atoms)
         for atoms, along, across, _ in self._tethers:
             row[atoms] += np.maximum(along, np.abs(across))
-        return float(row.max())
+        return float((row / self._left).max())
 
     def push(self, shape: Floats) -> Floats:
         """Return K · shape, both (3, n_atoms)."""
+        shape = self._scale * shape
         force = np.zeros_like(shape)
         for spring in self._bundles():
             stretch = np.take(shape, spring.second, axis=1) - np.take(shape, spring.first, axis=1)
@@ -110,7 +128,7 @@ class _Springs:
         for atoms, along, across, direction in self._tethers:
             force[:, atoms] += _pull(shape[:, atoms], along, across, direction)
         force[:, self._held] = 0.0
-        return force
+        return self._scale * force
 
     def _bundles(self) -> Iterable[_Bundle]:
         """Return all springs; many of them are linearised anew each time rather than kept."""
@@ -122,6 +140,16 @@ class _Springs:
                 pairs = slice(start, start + STRETCH)
                 ends = [np.take(self._position, atoms[pairs], axis=1) for atoms in (first, second)]
                 yield _Bundle(first[pairs], second[pairs], *_linearised(ends[1] - ends[0], rest_squared[pairs]))
+
+
+def _left_by_damping(model: Model, held: Indices) -> Floats:
+    """Return 1 − m/2 for each atom, m the sum of the coefficients that act on it; 0 where they are 2 or more."""
+    left = np.ones(model.n_atoms)
+    for force in model.forces:
+        if isinstance(force, DampingForce):
+            left[force.atoms] -= 0.5 * force.coefficient
+    left[held] = 1.0
+    return np.maximum(left, 0.0)
 
 
 class _Bundle(NamedTuple):

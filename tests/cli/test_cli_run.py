@@ -106,7 +106,7 @@ def test_a_blow_up_is_explained_and_keeps_the_frames_before(cli):
         "  pushed hardest by bonds.left (scenes/rods.yaml:23), against left[2] (atom 2), "
         "with an impulse of 0.911 in one round\n"
         "  time_step is 0.1; the stiffness of the scene allows less than 0.0286\n"
-        "  remedy: a smaller time_step, fewer bonds per atom, or damping\n"
+        "  remedy: a smaller time_step or fewer bonds per atom\n"
         "out.h5 keeps the frames up to round 10\n"
     )
     shown = cli("show", "out.h5")

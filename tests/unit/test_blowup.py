@@ -44,7 +44,18 @@ def test_a_bond_that_is_too_stiff_for_the_time_step() -> None:
         pushed,
     )
     assert re.fullmatch(r"  time_step is 0\.5; the stiffness of the scene allows less than 0\.\d+", stiff)
-    assert remedy == "  remedy: a smaller time_step, fewer bonds per atom, or damping"
+    assert remedy == "  remedy: a smaller time_step or fewer bonds per atom"
+
+
+def test_damping_that_is_too_much_for_the_time_step() -> None:
+    """A tether of stiffness 1 at its target needs τ < 4 − 2m, and is as elastic at any distance."""
+    scene = {"t": {"kind": "tether", "acts_on": "calm", "target": [0, 0, 0], "rest": 0}}
+    mud = {"kind": "damping", "coefficient": 0.9, "acts_on": "calm"}
+    text = report_of(PAIR, 2.3, forces={**scene, "mud": mud})
+    assert text.splitlines()[-2:] == [
+        "  time_step is 2.3; the stiffness of the scene allows less than 2.2 with its damping",
+        "  remedy: a smaller time_step or fewer bonds per atom, or less damping",
+    ]
 
 
 def test_a_force_that_is_too_strong() -> None:
@@ -53,7 +64,7 @@ def test_a_force_that_is_too_strong() -> None:
         "the simulation blew up in round 1: calm[0] (atom 0) flew off\n"
         "  pushed hardest by forces.storm (<scene>:1), with an impulse of 1e+09 in one round\n"
         "  time_step 0.1 is below inf, the limit of the stiffness: look at speeds\n"
-        "  remedy: weaker external forces, lower velocities, or a smaller time_step"
+        "  remedy: weaker external forces, lower velocities, more damping, or a smaller time_step"
     )
 
 
@@ -63,7 +74,7 @@ def test_a_collision_out_of_nearly_nothing() -> None:
         "the simulation blew up in round 1: a[0] (atom 0) flew off\n"
         "  pushed hardest by collisions.c (<scene>:1), against a[1] (atom 1), with an impulse of 4e+09 in one round\n"
         "  time_step is 0.1; the stiffness of the scene allows less than 5e-19\n"
-        "  remedy: a smaller time_step, fewer bonds per atom, or damping"
+        "  remedy: a smaller time_step or fewer bonds per atom"
     )
 
 

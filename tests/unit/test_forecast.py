@@ -32,6 +32,20 @@ def test_a_rod_of_70_atoms_needs_a_time_step_below_a_35th() -> None:
     ]
 
 
+def test_damping_lowers_the_largest_time_step() -> None:
+    """4 − 2m instead of 4: with m = 1 half as much; it is blamed only where the time step would do without it."""
+    mud = {"mud": {"kind": "damping", "coefficient": 1}}
+    assert warnings(ROD, 1 / 71, bonds=RIGID, forces=mud) == []
+    assert warnings(ROD, 1 / 69, bonds=RIGID, forces=mud) == [
+        "time_step 0.0144928 is at or above 0.0143, the largest that the stiffness of this scene allows "
+        "with its damping; expect it to blow up; try time_step 0.007"
+    ]
+    assert warnings(ROD, 1 / 34, bonds=RIGID, forces=mud) == [
+        "time_step 0.0294118 is at or above 0.0143, the largest that the stiffness of this scene allows; "
+        "expect it to blow up; try time_step 0.007"
+    ]
+
+
 def balls(speed: float) -> dict[str, Any]:
     return {
         "cue": atoms_at((0, 0, 0), velocity=[speed, 0, 0]),
