@@ -6,12 +6,15 @@ import json
 import re
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import atomsim
 from atomsim.cli import main
 from atomsim.core import bond_forms, collisions, stepper
+from atomsim.golden import Golden, check_golden, read_golden, record_golden
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests" / "golden"
@@ -124,9 +127,72 @@ def test_a_damaged_golden_is_no_golden(cli, tmp_path, damage):
     assert err.startswith(f"{tmp_path / 'threads.golden.json'}: is not a golden trajectory")
 
 
-def test_a_golden_holds_what_the_scene_gave(tmp_path):
-    shutil.copy(GOLDEN / "rods.golden.json", tmp_path)
-    document = json.loads((tmp_path / "rods.golden.json").read_text())
+PAIR = (
+    "atomsim: 1\ntime_step: 0.1\nrounds: 35\nrecord_every: 2\ngroups:\n"
+    "  a: {shape: string, count: 2, step: [1, 0, 0], spin: {axis: z, rate: 1}}\n"
+    "bonds:\n  a: {within: a, rule: all-pairs}\n"
+)
+
+
+@pytest.fixture
+def pair(tmp_path):
+    """A scene of two atoms and all its frames: rounds 0, 2, 4 … 34 and 35."""
+    scene = tmp_path / "pair.yaml"
+    scene.write_text(PAIR)
+    model, state = atomsim.compile(atomsim.load(scene))
+    return scene, list(atomsim.simulate(model, state, 35, 2)), model.groups
+
+
+def test_a_golden_holds_what_the_scene_gave(cli, tmp_path, pair):
+    """The digest of every frame; in full, numbers 0, 1, 4, 16 … and the last."""
+    scene, frames, _ = pair
+    code, out, _ = cli("golden", "record", scene, "--into", tmp_path)
+    assert (code, out) == (0, f"{tmp_path / 'pair.golden.json'}: 19 digests, 5 frames\n")
+    recorded = read_golden(tmp_path / "pair.golden.json")
+    assert list(recorded.digests.items()) == [(frame.round_index, frame.digest) for frame in frames]
+    assert list(recorded.frames) == [0, 2, 8, 32, 35]
+    for number, full in zip((0, 1, 4, 16, 18), recorded.frames.values(), strict=True):
+        assert full.tobytes() == frames[number].position.tobytes() + frames[number].velocity.tobytes()
+
+
+@pytest.mark.parametrize(("n_frames", "in_full"), [(1, [0]), (2, [0, 2]), (4, [0, 2, 6]), (5, [0, 2, 8])])
+def test_the_last_frame_is_held_once_whatever_its_number(pair, n_frames, in_full):
+    assert list(record_golden(pair[1][:n_frames]).frames) == in_full
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ((0,), "differs from round 0 on; round 0: velocity of 1 of 2 atoms differs, first a[1] (atom 1), "),
+        ((3, 4, 16), "differs from round 6 on; round 8: velocity of 1 of 2 atoms differs, first a[1] (atom 1), "),
+        ((18,), "differs from round 35 on; round 35: velocity of 1 of 2 atoms differs, first a[1] (atom 1), "),
+    ],
+)
+def test_the_first_round_that_differs_and_the_atom_in_the_next_full_frame(pair, wrong, said):
+    _, frames, groups = pair
+    approved = record_golden(frames)
+    for number in wrong:
+        velocity = frames[number].velocity.copy()
+        velocity[1, 2] += 1e-12
+        frames[number] = replace(frames[number], velocity=velocity, digest="another")
+    assert check_golden(Golden(approved.digests, {}), frames, groups) == said.split(";")[0]
+    found = check_golden(approved, frames, groups)
+    assert found is not None
+    assert found.startswith(said)
+    assert found.endswith("most a[1] (atom 1) by 1e-12")
+
+
+def test_a_run_of_other_rounds_than_its_golden(cli, tmp_path, pair):
+    scene, _, _ = pair
+    assert cli("golden", "record", scene, "--into", tmp_path)[0] == 0
+    for rounds, wrong in ((34, "the run has 18 frames, the golden 19"), (36, "round 36 is not in the golden")):
+        scene.write_text(PAIR.replace("rounds: 35", f"rounds: {rounds}"))
+        code, out, _ = cli("golden", "check", scene, "--into", tmp_path)
+        assert (code, out) == (1, f"{scene}: {wrong}\n")
+
+
+def test_the_golden_of_the_rods_holds_every_frame():
+    document = json.loads((GOLDEN / "rods.golden.json").read_text())
     assert list(document["digests"])[:3] == ["0", "10", "20"]
     assert len(document["digests"]) == 401
     assert list(map(int, document["frames"])) == [0, 10, 40, 160, 640, 2560, 4000]
