@@ -46,7 +46,7 @@ def _draw_fluid(results: Results, axes: Axes) -> None:
     names = [name for name, value in next(iter(sizes.values())).items() if value]
     for name, color in zip(names, LINES, strict=False):
         axes.semilogx(list(sizes), [row[name]["median"] for row in sizes.values()], "o-", color=color, label=name)
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.5 * axes.dataLim.ymax)  # the legend stands above the lines
     axes.set_title("free fluid: ns per atom and round")
     axes.set_xlabel("atoms")
     axes.legend(frameon=False)

@@ -8,6 +8,7 @@ import os
 import zlib
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -49,7 +50,6 @@ class Journal:
         self._file = os.fdopen(fd, "rb", buffering=0)
         self._size = os.fstat(fd).st_size
         try:
-            self._offsets: list[int] = []
             records = self._whole_records()
             self._read_header(records)
             self._read_rest(records)
@@ -65,8 +65,10 @@ class Journal:
     def rows(self, start: int, stop: int) -> Rows:
         """Return the frames start ≤ index < stop as rows."""
         rows = np.empty(stop - start, self._dtype)
-        for i, offset in enumerate(self._offsets[start:stop]):
-            self._read_into(rows[i : i + 1].view("u1").data, offset)
+        offsets, size = self._offsets[start:stop], self._dtype.itemsize
+        breaks = np.flatnonzero(np.diff(offsets) != size) + 1  # where the next block of frames begins
+        for begin, end in pairwise([0, *breaks.tolist(), stop - start]):
+            self._read_into(rows[begin:end].view("u1").data, int(offsets[begin]))
         return rows
 
     def state(self, index: int) -> tuple[Floats, Floats]:
@@ -87,31 +89,41 @@ class Journal:
 
     def _read_rest(self, records: Iterator[Record]) -> None:
         self.end = End("killed")
+        blocks: list[range] = []
         for kind, start, length in records:
-            if kind == FRAMES and length % self._dtype.itemsize == 0:
-                self._offsets.extend(range(start, start + length, self._dtype.itemsize))
+            if kind == FRAMES and length and length % self._dtype.itemsize == 0:
+                blocks.append(range(start, start + length, self._dtype.itemsize))
             elif kind == END:
                 self.end = end_from(json.loads(self._bytes(start, length)))
             elif kind == GO_ON:
-                self._go_on(int(json.loads(self._bytes(start, length))["rounds"]))
+                self._go_on(int(json.loads(self._bytes(start, length))["rounds"]), blocks)
             else:
                 break
             self.whole = start + length
+        check_room(sum(map(len, blocks)) * SERIES.itemsize)
+        nothing = np.empty(0, dtype=np.int64)
+        self._offsets = np.concatenate([nothing, *(np.arange(at.start, at.stop, at.step) for at in blocks)])
         self.series = self._series()
         check_rounds(self.series)
 
-    def _go_on(self, rounds: int) -> None:
+    def _go_on(self, rounds: int, blocks: list[range]) -> None:
         self.end = End("killed")
         self.header = replace(self.header, rounds=rounds)
-        last = self._offsets[-1:]
-        if last and not self.header.records(int(self._series_at(last[0])["round"])):
-            self._offsets.pop()
+        if blocks and not self.header.records(int(self._series_at(blocks[-1][-1])["round"])):
+            blocks[-1] = blocks[-1][:-1]
+            if not blocks[-1]:
+                blocks.pop()
 
     def _series(self) -> Series:
-        check_room(len(self._offsets) * SERIES.itemsize)
         series = np.empty(len(self._offsets), SERIES)
-        for i, offset in enumerate(self._offsets):
-            series[i] = self._series_at(offset)
+        n_rows = _PIECE // self._dtype.itemsize
+        if n_rows == 0:
+            for i, offset in enumerate(self._offsets.tolist()):
+                series[i] = self._series_at(offset)
+            return series
+        for start in range(0, len(series), n_rows):
+            stop = min(start + n_rows, len(series))
+            series[start:stop] = self.rows(start, stop)["series"]
         return series
 
     def _series_at(self, offset: int) -> Any:
