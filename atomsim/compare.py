@@ -74,8 +74,8 @@ def frame_difference(
 
 
 def _apart(left: Floats, right: Floats) -> Floats:
-    """Return the absolute differences; equal infinities and NaNs are no difference."""
-    with np.errstate(invalid="ignore"):
+    """Return the absolute differences; equal infinities and NaNs are no difference, the largest are infinite."""
+    with np.errstate(invalid="ignore", over="ignore"):
         apart: Floats = np.abs(left - right)
     same = (left == right) | (np.isnan(left) & np.isnan(right))
     apart[same] = 0.0
