@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR
 from atomsim.core.bonds import bond_forms
 from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.forces import held_atoms
@@ -14,10 +15,13 @@ from atomsim.core.memory import readable_bytes
 from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model, State
 from atomsim.core.stiffness import largest_time_step
 from atomsim.scene.wording import printable
-from atomsim.trajectory import trajectory_bytes
+from atomsim.trajectory import count_frames, trajectory_bytes
 
 if TYPE_CHECKING:
     from atomsim.trajectory import Trajectory
+
+BYTES_OF_PROGRAM = 60_000_000
+"""What Python and the packages take, whatever the scene."""
 
 
 def describe_model(model: Model, state: State, rounds: int, record_every: int) -> list[str]:
@@ -29,7 +33,7 @@ def describe_model(model: Model, state: State, rounds: int, record_every: int) -
         rounds: iteration rounds to run.
         record_every: rounds between two frames.
     """
-    n_frames = (rounds - 1) // record_every + 2
+    n_frames = count_frames(rounds, record_every)
     size = trajectory_bytes(model.n_atoms, rounds, record_every)
     limit = largest_time_step(model, state)
     stable = [] if limit == math.inf else [f"stable below {limit:.3g}"]
@@ -98,4 +102,4 @@ def _collisions(table: CollisionTable) -> str:
 def _memory(model: Model) -> int:
     """Estimate what a run holds at once: arrays of the state, tables in their forms, waiting frames."""
     n_bonds = sum(table.first.size for table in model.bonds)
-    return 60_000_000 + 600 * model.n_atoms + 100 * n_bonds
+    return BYTES_OF_PROGRAM + BYTES_PER_ATOM * model.n_atoms + BYTES_PER_PAIR * n_bonds

@@ -14,7 +14,7 @@ from atomsim.compiler.colors import PALETTE, hex_color
 from atomsim.compiler.pairs import RuleError, expand
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out, place_of
-from atomsim.compiler.shapes import count_atoms, place, unit
+from atomsim.compiler.shapes import place, unit
 from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import (
     Between,
@@ -246,23 +246,11 @@ class _Compiler:
         for position in (self._placed, self._position):
             same = np.flatnonzero(pair_squares(position.T, first, second) == 0.0)
             if same.size:
-                one, other = int(first[same[0]]), int(second[same[0]])
+                one, other = (self._selections.expression(int(ends[same[0]])) for ends in (first, second))
                 more = " (and so do others)" if same.size > 1 else ""
-                self._complain(
-                    path, f"{self._name(one)} and {self._name(other)} are {what} but start at the same place{more}"
-                )
+                self._complain(path, f"{one} and {other} are {what} but start at the same place{more}")
                 return True
         return False
-
-    def _name(self, atom: int) -> str:
-        """Write an atom as the user would select it."""
-        start = 0
-        for name, group in self._scene.groups.items():
-            count = count_atoms(group)
-            if atom < start + count:
-                return f"{name}[{atom - start}]"
-            start += count
-        raise AssertionError(f"atom {atom} belongs to no group")
 
     def _require_room(self, n_atoms: int) -> None:
         """Refuse more atoms than fit into memory, before making any."""

@@ -12,15 +12,11 @@ from atomsim.compiler.shapes import count_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Indices
 from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
-from atomsim.scene.selection import parse_selection
+from atomsim.scene.selection import SELECTION_KEYS, parse_selection
 from atomsim.scene.source import KeyPath
 
 LARGE = 1 << 26
 """Bytes of selections from which on it is worth asking whether more will fit."""
-
-
-_SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
-"""The keys under which declarations select atoms."""
 
 
 class SelectionError(ValueError):
@@ -101,6 +97,11 @@ class Selections:
         part = parse_selection(expression)
         return None if part.axes else self._layouts.get(part.group)
 
+    def expression(self, atom: int) -> str:
+        """Return the expression that selects one atom: the way back."""
+        name, layout = next(item for item in self._layouts.items() if atom < item[1].stop)
+        return f"{name}[{atom - layout.start}]"
+
     def grid_places(self, expression: str) -> Indices | None:
         """Return the grid places of the atoms selected, (n_selected, n_axes), or None where there is no grid."""
         part = parse_selection(expression)
@@ -153,7 +154,7 @@ def _along_axis(axis: int | slice, count: int, expression: str, group: str) -> I
 
 def place_of(expression: str, declaration: Declaration) -> KeyPath:
     """Return where in a declaration a selection was written, as a path inside it; empty if nowhere."""
-    places = (_place_in(getattr(declaration, key, None), expression, (key,)) for key in _SELECTION_KEYS)
+    places = (_place_in(getattr(declaration, key, None), expression, (key,)) for key in SELECTION_KEYS)
     return next(filter(None, places), ())
 
 

@@ -158,5 +158,5 @@ def _centroid(points: Floats) -> Floats:
 
 
 def _quantised(points: Floats) -> Floats:
-    """Round every coordinate to a multiple of 2⁻⁴⁰."""
+    """Round every coordinate to a multiple of 2⁻⁴⁰, as `quantise` does, but let a zero keep its sign."""
     return np.round(points * 2.0**40) / 2.0**40

@@ -13,6 +13,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from atomsim.core.model import Floats, Indices
+from atomsim.core.near import sum_squares
 
 TILE_BYTES = 1 << 19
 """A tile of differences should stay in the cache of one core."""
@@ -34,13 +35,6 @@ class BondForm(Protocol):
 
     def subtotal(self, position: Floats) -> Floats:
         """Return the sum of bond forces on each atom of the span, (3, n_span); valid until the next call."""
-
-
-def square_distance(difference: Floats, squared: Floats, out: Floats) -> None:
-    """Set `out` (…) to d² = (dx·dx + dy·dy) + dz·dz of differences (3, …); `squared` is scratch, (3, …)."""
-    np.multiply(difference, difference, out=squared)
-    np.add(squared[0], squared[1], out=out)
-    np.add(out, squared[2], out=out)
 
 
 def weigh_bonds(weight: Floats, rest_squared: Floats) -> None:
@@ -92,7 +86,7 @@ class DenseForm:
             scratch = self._scratch.reshape(-1)[: 7 * size].reshape(7, *shape)
             difference, squared, weight = scratch[:3], scratch[3:6], scratch[6]
             np.matmul(self._left, self._right[..., tile.columns], out=difference.transpose(0, 2, 1, 3))
-            square_distance(difference, squared, weight)
+            sum_squares(difference, squared, weight)
             weight.reshape(-1)[tile.unbound] = np.inf  # no pair, no division by zero
             weigh_bonds(weight, tile.rest_squared)
             if tile.has_gaps:
@@ -172,7 +166,7 @@ class OffsetForm:
         span, total, weight = position[:, self.atoms], self._subtotal, self._weight
         for upper, lower, force in self._runs:
             np.subtract(span[:, upper], span[:, lower], out=force)
-        square_distance(self._difference, self._squared, weight)
+        sum_squares(self._difference, self._squared, weight)
         weight[self._unbound] = np.inf  # no pair, no division by zero
         weigh_bonds(weight, self._rest_squared)
         weight[self._unbound] = 0.0
@@ -223,7 +217,7 @@ class GeneralForm:
         span = position[:, self.atoms]
         force = np.take(span, self._second, axis=1)
         force -= np.take(span, self._first, axis=1)
-        square_distance(force, self._squared, self._weight)
+        sum_squares(force, self._squared, self._weight)
         weigh_bonds(self._weight, self._rest_squared)
         force *= self._weight
         return self._scatter.total(force)

@@ -79,11 +79,17 @@ def squared_distance(left: Floats, right: Floats) -> Floats:
     return _squares(right - left)
 
 
+def sum_squares(difference: Floats, scratch: Floats, out: Floats) -> None:
+    """Set `out` (…) to d² = (dx·dx + dy·dy) + dz·dz of differences (3, …), which may themselves be the scratch."""
+    np.multiply(difference, difference, out=scratch)
+    np.add(scratch[0], scratch[1], out=out)
+    np.add(out, scratch[2], out=out)
+
+
 def _squares(difference: Floats) -> Floats:
     """Return d² of differences (3, …), which are lost."""
-    difference *= difference
-    squared: Floats = difference[0] + difference[1]
-    squared += difference[2]
+    squared = np.empty(difference.shape[1:])
+    sum_squares(difference, difference, squared)
     return squared
 
 

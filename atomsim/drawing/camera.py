@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from atomsim.core.forces import quantise
 from atomsim.core.model import Floats
 from atomsim.errors import InputError
 
@@ -25,11 +26,6 @@ FARTHEST = 1e9
 
 NARROWEST = 1e-3
 """No picture shows less than this [length]."""
-
-
-def quantise(value: float) -> float:
-    """Drop the last bits, in which one mathematics library may differ from another."""
-    return round(value * 2.0**40) / 2.0**40
 
 
 def dot(a: Vector, b: Vector) -> float:

@@ -9,8 +9,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from atomsim.core.forces import quantise
 from atomsim.core.model import Floats, Indices
-from atomsim.drawing.camera import Vector, cross, quantise, unit
+from atomsim.drawing.camera import Vector, cross, unit
 from atomsim.drawing.trace import Grid, nearest_ball
 
 LAMP_TOWARDS: Vector = (-0.85, 0.85, 0.3)

@@ -7,12 +7,10 @@ from contextlib import suppress
 from typing import Any
 
 from atomsim.errors import Problem
-from atomsim.scene.selection import SelectionSyntaxError, parse_selection
+from atomsim.scene.selection import SELECTION_KEYS, SelectionSyntaxError, parse_selection
 from atomsim.scene.source import KeyPath, Source, dotted
 from atomsim.scene.tree import Node
 from atomsim.scene.wording import meant, readable
-
-_SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
 
 
 def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
@@ -55,7 +53,7 @@ def _selected(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     """Every group that a selection names."""
     for section in ("bonds", "collisions", "forces"):
         for name, declaration in _mapping(data.get(section)).items():
-            for key in _SELECTION_KEYS:
+            for key in SELECTION_KEYS:
                 for path, text in _texts(_mapping(declaration).get(key), (section, name, key)):
                     with suppress(SelectionSyntaxError):
                         yield path, parse_selection(text).group

@@ -1,6 +1,6 @@
 """Trajectories: recording a run and reading it back; knows no scene, and nothing of how a run comes about."""
 
-from atomsim.trajectory.header import End, Header, trajectory_bytes
+from atomsim.trajectory.header import End, Header, count_frames, trajectory_bytes
 from atomsim.trajectory.reader import Frames, Trajectory
 from atomsim.trajectory.recorder import Recorder, check_target, recover
 from atomsim.trajectory.records import journal_path
@@ -12,6 +12,7 @@ __all__ = [
     "Recorder",
     "Trajectory",
     "check_target",
+    "count_frames",
     "journal_path",
     "recover",
     "trajectory_bytes",

@@ -134,8 +134,8 @@ class Header:
             compress=compress,
             groups=model.groups,
             origins=of_groups + of_bonds + of_rest,
-            bond=np.concatenate([np.empty((0, 2)), *pairs]).astype("<i4"),
-            bond_table=np.concatenate([np.empty(0), *rows]).astype("<i4"),
+            bond=np.concatenate([np.empty((0, 2), int), *pairs], dtype="<i4"),
+            bond_table=np.concatenate([np.empty(0, int), *rows], dtype="<i4"),
             versions=Versions.here(),
         )
 
@@ -144,7 +144,11 @@ class Header:
         return round_index % self.record_every == 0 or round_index == self.rounds
 
 
+def count_frames(rounds: int, record_every: int) -> int:
+    """Return how many frames a run keeps that nothing stops: the first, those `record_every` rounds apart, the last."""
+    return (rounds - 1) // record_every + 2
+
+
 def trajectory_bytes(n_atoms: int, rounds: int, record_every: int) -> int:
     """Return about how large the trajectory of a run becomes, without compression."""
-    n_frames = (rounds - 1) // record_every + 2
-    return n_frames * (n_atoms * BYTES_PER_ATOM + BYTES_PER_FRAME)
+    return count_frames(rounds, record_every) * (n_atoms * BYTES_PER_ATOM + BYTES_PER_FRAME)

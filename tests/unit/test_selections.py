@@ -43,6 +43,12 @@ def test_atoms_ascend_without_duplicates(selection: tuple[str, ...], expected: l
     assert SELECTIONS.atoms(selection).tolist() == expected
 
 
+def test_the_expression_of_an_atom_selects_it_alone() -> None:
+    written = [SELECTIONS.expression(atom) for atom in range(34)]
+    assert (written[9], written[10], written[33]) == ("ring[9]", "floor[0]", "brick[11]")
+    assert [SELECTIONS.atoms((expression,)).tolist() for expression in written] == [[atom] for atom in range(34)]
+
+
 @pytest.mark.parametrize(
     ("expression", "message"),
     [

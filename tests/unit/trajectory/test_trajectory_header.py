@@ -11,6 +11,7 @@ from sample_run import SCENE, header, model
 
 from atomsim.trajectory.document import FIELDS, SCHEMA_VERSION, check_version, document, end_from, header_from
 from atomsim.trajectory.guard import DamageError
+from atomsim.trajectory.header import count_frames
 
 
 def test_header_of_a_model_names_every_declaration_and_bond() -> None:
@@ -38,6 +39,7 @@ def test_a_scene_without_bonds_has_an_empty_table_of_them() -> None:
 @pytest.mark.parametrize(("rounds", "recorded"), [(40, [0, 10, 20, 30, 40]), (15, [0, 10, 15]), (5, [0, 5]), (0, [0])])
 def test_rounds_that_are_recorded(rounds: int, recorded: list[int]) -> None:
     assert [i for i in range(rounds + 1) if header(rounds).records(i)] == recorded
+    assert count_frames(rounds, record_every=10) == len(recorded)
 
 
 def test_the_document_survives_json_and_gives_the_same_header() -> None:
