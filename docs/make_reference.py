@@ -35,7 +35,8 @@ Every key of a scene file. A scene is YAML, and data only: loading it runs nothi
 A [tutorial](tutorial.md) builds one step by step; editors complete and check scenes with the
 [JSON Schema](../atomsim/scene/scene.schema.json), which `atomsim schema` prints.
 
-An unknown key is an error, and so is a value of the wrong type: nothing is guessed. `null` counts as not written.
+An unknown key is an error, and so is a value of the wrong type: nothing is guessed. `null` counts as not written; a key
+without a value is an error, which finds `color: #ff0000`: `#` begins a comment, so such a color needs quotes.
 Numbers may be written `1e-9`; booleans are `true` and `false`.
 
 ## Words used below

@@ -56,7 +56,7 @@ def _read_chain(name: str, folder: str, chain: list[str]) -> Node:
     entries = dict(_entries(root))
     extends = entries.pop("extends", None)
     root = Node(dict(entries), root.mark)
-    if extends is None or extends.value is None:
+    if extends is None or (extends.value is None and extends.blank is None):
         return root
     chain = [*chain, name]
     base = _base_name(extends, folder, chain)

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from atomsim.errors import Problem, SceneError
+from atomsim.scene.blanks import check_blanks
 from atomsim.scene.files import read_scene_file, read_scene_text
 from atomsim.scene.language import Scene
 from atomsim.scene.overrides import override
@@ -72,7 +73,7 @@ def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
     data = root.plain()
     source = Source(name=name, overrides=overrides, marks=Places(root))
     present = without_nulls(data)
-    problems = [*check_deletions(root), *check_references(present, source)]
+    problems = [*check_blanks(root, data), *check_deletions(root), *check_references(present, source)]
     scene = _validated(data, source, problems)
     if problems or scene is None:
         raise SceneError(_in_order(problems, source))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import yaml
 
@@ -20,6 +21,7 @@ MAX_VALUES = 1_000_000
 
 _UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _LINE_BREAK = re.compile("\r\n|\r|\n")
+_COMMENT = re.compile("[ \t]+(#[^\r\n]{1,200})")
 _PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 Place = Callable[[int, int], Mark]
@@ -55,6 +57,7 @@ class _Reader:
     """Recursive descent over the events of a YAML parser; the depth is bounded before Python's is."""
 
     def __init__(self, text: str, place: Place) -> None:
+        self._text = text
         self._events = self._parse(text)
         self._place = place
         self._problems: list[Problem] = []
@@ -66,7 +69,7 @@ class _Reader:
         next(self._events)
         start = next(self._events)
         if isinstance(start, yaml.StreamEndEvent):
-            return Node(None, self._place(1, 1))
+            return Node(None, self._place(1, 1), blank="")
         root = self._node(next(self._events), at)
         next(self._events)
         after = next(self._events)
@@ -74,7 +77,7 @@ class _Reader:
             self._refuse(after, (), "a second document begins here; a scene is one document")
         if self._problems:
             raise SceneError(self._problems)
-        return Node(root.value, self._place(1, 1))
+        return replace(root, mark=self._place(1, 1))
 
     def _parse(self, text: str) -> Iterator[yaml.Event]:
         try:
@@ -97,7 +100,7 @@ class _Reader:
         if event.anchor is not None:
             self._anchors[event.anchor] = None
         if isinstance(event, yaml.ScalarEvent):
-            node = Node(self._scalar(event, path), mark)
+            node = Node(self._scalar(event, path), mark, blank=self._blank(event))
         elif isinstance(event, yaml.SequenceStartEvent):
             node = Node(self._list(path), mark)
         else:
@@ -113,6 +116,13 @@ class _Reader:
         if unprintable is not None:
             self._refuse(event, path, f"the character U+{ord(unprintable.group()):04X} cannot stand in a text")
         return str(event.value)
+
+    def _blank(self, event: yaml.ScalarEvent) -> str | None:
+        """Return the comment that stands where a value is missing, often an empty one; None where there is a value."""
+        if event.value or not event.implicit[0] or event.start_mark is None:
+            return None
+        comment = _COMMENT.match(self._text, event.start_mark.index)
+        return comment[1] if comment is not None else ""
 
     def _list(self, path: KeyPath) -> list[Node]:
         items: list[Node] = []
@@ -131,7 +141,7 @@ class _Reader:
                 remedy = f"; {NEEDS_BRACKETS}" if node.value is None and is_number(key) else ""
                 self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}{remedy}")
             else:
-                entries[key] = Node(node.value, self._mark(event))
+                entries[key] = replace(node, mark=self._mark(event))
         return entries
 
     def _key(self, event: yaml.Event, path: KeyPath) -> str:

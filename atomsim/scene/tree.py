@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from atomsim.errors import Mark
@@ -18,20 +18,22 @@ class Node:
 
     A node that `deletes` is the null that took the place of a value: it is no part of the scene any more, but a mistake
     that it makes can still be reported at its place. A node that `deletes_nothing` is the null that took no place.
+    A `blank` is the null of a key without a value: the comment behind the key, often empty.
     """
 
     value: Scalar | dict[str, Node] | list[Node]
     mark: Mark
     deletes: bool = False
     deletes_nothing: bool = False
+    blank: str | None = None
 
     def deleting(self) -> Node:
         """Return the null, laid over a value."""
-        return Node(None, self.mark, deletes=True)
+        return replace(self, deletes=True)
 
     def deleting_nothing(self) -> Node:
         """Return the null, laid over nothing."""
-        return Node(None, self.mark, deletes_nothing=True)
+        return replace(self, deletes_nothing=True)
 
     def child(self, part: str | int) -> Node | None:
         """Return the value under a key or an index, or None."""

@@ -236,6 +236,21 @@ def test_a_null_may_say_that_a_key_keeps_its_default(folder: Path) -> None:
     assert load("top.yaml").scene == load("base.yaml").scene
 
 
+def test_a_key_without_a_value_deletes_nothing_unseen(folder: Path) -> None:
+    write("base.yaml", GOOD.replace("count: 20", "count: 20, color: red"))
+    write("top.yaml", "extends: base.yaml\ngroups:\n  ring:\n    color: #00f\n  rod:\n    velocity:\n")
+    assert refusal("top.yaml").split("\n") == [
+        'top.yaml:4:5: groups.ring.color: needs a value; `#` begins a comment, so put it in quotes: color: "#00f"',
+        "top.yaml:6:5: groups.rod.velocity: needs a value; write `null` to leave it out",
+    ]
+
+
+def test_sections_and_names_without_contents_are_not_there() -> None:
+    """As when all that stood in them was made a comment."""
+    emptied = "jitter:\nbonds:\n  # a: {within: ring}\ncollisions:\n  a:\nrender:\n  camera:\n  colors:\n"
+    assert loads(GOOD + emptied).scene == loads(GOOD).scene
+
+
 def test_a_name_that_a_scene_between_deletes_in_vain_may_be_declared(folder: Path) -> None:
     write("mid.yaml", "extends: base.yaml\nforces: {wind: null}\n")
     write("top.yaml", "extends: mid.yaml\nforces: {wind: {kind: hold}}\n")
@@ -246,6 +261,7 @@ def test_a_name_that_a_scene_between_deletes_in_vain_may_be_declared(folder: Pat
     ("extends", "message"),
     [
         ("3", "needs the path of a scene file (got 3)"),
+        ("#base.yaml", "needs the path of a scene file (got null)"),
         ("[base.yaml]", 'needs the path of a scene file (got ["base.yaml"])'),
         ("/etc/passwd", 'needs a path relative to this file (got "/etc/passwd")'),
         ('""', 'needs a path relative to this file (got "")'),
