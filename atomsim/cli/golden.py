@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -42,8 +43,10 @@ def record(
     twice = next((path for number, path in enumerate(paths) if path in paths[:number]), None)
     if twice is not None:
         raise InputError(f"two of these scenes would share the golden {twice}; record them into different folders")
+    _require_folder(into)
+    reason = " ".join(reason.split())
     existing = [path for path in paths if path.exists()]
-    if existing and not reason.strip():
+    if existing and not reason:
         raise InputError(f"{existing[0]} exists; say why it changes with --reason")
     try:
         into.mkdir(parents=True, exist_ok=True)
@@ -53,10 +56,8 @@ def record(
             made = record_golden(frames)
             last_round, digest = list(made.digests.items())[-1]
             write_golden(made, path)
-            with (into / LOG).open("a") as log:
-                log.write(
-                    f"- {scene.stem}: round {last_round} is {digest[:16]}…: {reason.strip() or 'first recording'}\n"
-                )
+            with (into / LOG).open("a", encoding="utf-8", errors="backslashreplace") as log:
+                log.write(f"- {scene.stem}: round {last_round} is {digest[:16]}…: {reason or 'first recording'}\n")
             say(f"{path}: {len(made.digests)} digests, {len(made.frames)} frames")
     except OSError as error:
         raise RunError(f"{into}: cannot be written: {error.strerror}") from None
@@ -72,14 +73,17 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "aut
 
     atomsim golden check scenes/rods.yaml --into tests/golden
     """
+    from atomsim.errors import command
     from atomsim.golden import check_golden, golden_path, read_golden
 
+    _require_folder(into)
     n_wrong = 0
     for scene in scenes:
         path = golden_path(scene, into)
         if not path.exists():
             n_wrong += 1
-            say(f"{scene}: there is no golden {path}; record it with: atomsim golden record {scene} --into {into}")
+            remedy = f"{command('golden record', scene)} --into {shlex.quote(str(into))}"
+            say(f"{scene}: there is no golden {path}; record it with: {remedy}")
             continue
         model, frames = _computed(scene, backend, threads)
         approved = read_golden(path)
@@ -89,6 +93,15 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "aut
     if n_wrong:
         tell(f"{n_wrong} of {len(scenes)} scenes differ from their goldens")
         raise typer.Exit(1)
+
+
+def _require_folder(into: Path) -> None:
+    """Refuse to look for goldens in a file, or below one."""
+    from atomsim.errors import InputError
+
+    for part in (into, *into.parents):
+        if part.exists() and not part.is_dir():
+            raise InputError(f"{part}: this is a file; give the name of a folder")
 
 
 def _computed(scene: Path, backend: str = "auto", threads: int | None = None) -> tuple[Model, Iterator[Frame]]:

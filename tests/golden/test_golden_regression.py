@@ -98,6 +98,15 @@ def test_recording_again_asks_for_a_reason_and_logs_it(cli, tmp_path):
     assert cli("golden", "check", scene, "--into", folder)[0] == 0
 
 
+@pytest.mark.parametrize("action", ["record", "check"])
+@pytest.mark.parametrize("below", ["", "deep/down"])
+def test_a_file_is_no_folder_for_goldens(cli, tmp_path, action, below):
+    (tmp_path / "file").write_text("mine")
+    code, out, err = cli("golden", action, ROOT / "scenes" / "threads.yaml", "--into", tmp_path / "file" / below)
+    assert (code, out, err) == (2, "", f"{tmp_path / 'file'}: this is a file; give the name of a folder\n")
+    assert (tmp_path / "file").read_text() == "mine"
+
+
 def test_a_scene_with_other_atoms_than_its_golden(cli, tmp_path):
     scene = tmp_path / "threads.yaml"
     scene.write_text((ROOT / "scenes" / "rods.yaml").read_text().replace("count: 70", "count: 71", 1))
@@ -196,3 +205,14 @@ def test_the_golden_of_the_rods_holds_every_frame():
     assert list(document["digests"])[:3] == ["0", "10", "20"]
     assert len(document["digests"]) == 401
     assert list(map(int, document["frames"])) == [0, 10, 40, 160, 640, 2560, 4000]
+
+
+def test_a_reason_is_one_line_of_the_log_whatever_is_in_it(cli, tmp_path):
+    spaced, folder = tmp_path / "my pair.yaml", tmp_path / "g"
+    spaced.write_text(PAIR)
+    code, out, _ = cli("golden", "check", spaced, "--into", folder)
+    assert code == 1
+    assert out.endswith(f"record it with: atomsim golden record '{spaced}' --into {folder}\n")
+    assert cli("golden", "record", spaced, "--into", folder, "--reason", "a\nlonger  step τ \udcff\n")[0] == 0
+    log = (folder / "LOG.md").read_text(encoding="utf-8")
+    assert re.fullmatch(r"- my pair: round 35 is [0-9a-f]{16}…: a longer step τ \\udcff\n", log)
