@@ -33,8 +33,7 @@ class Finished:
         Raises:
             Exception: of nearly any kind, when it is damaged; see `guard.reading`.
         """
-        # HDF5's own locks fail on some network file systems, and nobody writes a finished file.
-        self._file = h5py.File(path, "r", locking=False)
+        self._file = _opened(path)
         try:
             self._read(PlainFile(self._file, path.stat().st_size))
         except BaseException:
@@ -62,6 +61,21 @@ class Finished:
         self._velocity = file.chunks(f"{PARTICLES}/velocity/value", shape, rows)
         if not self._position.compressed == self._velocity.compressed == self.header.compress:
             raise odd("it is compressed in another way")
+
+
+def _opened(path: Path) -> Any:
+    """Open a file for reading.
+
+    HDF5's own locks fail on some network file systems, and nobody writes a finished file, so none is wanted. But a file
+    that is open elsewhere in this process (h5py, MDAnalysis) opens only with the locks that it was opened with there.
+    """
+    for locking in (False, "best-effort"):
+        try:
+            return h5py.File(path, "r", locking=locking)
+        except OSError as error:
+            if "flag values don't match" not in str(error):
+                raise
+    return h5py.File(path, "r", locking=True)
 
 
 def _header(file: PlainFile) -> Header:

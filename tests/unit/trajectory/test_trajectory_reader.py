@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import h5py
+import MDAnalysis
 import numpy as np
 import pytest
 from sample_run import TIME_STEP, frame, header, holds, is_same_frame, killed, record
@@ -33,6 +35,25 @@ def test_a_trajectory_is_a_sequence_of_frames(path: Path) -> None:
         for index in (5, -6):
             with pytest.raises(IndexError):
                 trajectory[index]
+
+
+@pytest.mark.parametrize("mode", ["r", "r+"])
+@pytest.mark.parametrize("locking", [None, False, True, "best-effort"])
+def test_a_file_that_is_open_elsewhere_in_the_process(mode: str, locking: str | bool | None, tmp_path: Path) -> None:
+    """It can be read there and here, and outlives being closed here."""
+    path = record(tmp_path / "out.h5", header(40))
+    with h5py.File(path, mode, locking=locking) as file:
+        with Trajectory(path) as trajectory:
+            trajectory.verify()
+        assert file["particles/trajectory/position/value"].shape == (5, 7, 3)
+
+
+def test_a_file_that_mdanalysis_has_open(tmp_path: Path) -> None:
+    path = record(tmp_path / "out.h5", header(40))
+    universe = MDAnalysis.Universe(path, format="H5MD", topology_format="MINIMAL", n_atoms=7, to_guess=())
+    with Trajectory(path) as trajectory:
+        assert len(trajectory) == len(universe.trajectory) == 5
+    universe.trajectory.close()
 
 
 @pytest.mark.parametrize(
