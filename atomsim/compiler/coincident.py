@@ -5,8 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
+from atomsim.core.near import pair_squares
 
 Pairs = tuple[Indices, Indices]
+
+
+def coincident_among(position: Floats, first: Indices, second: Indices) -> Pairs:
+    """Return those of some pairs whose distance squared is zero.
+
+    Args:
+        position: atom centres [length], (n_atoms, 3).
+        first: one atom of each pair, (n_pairs,).
+        second: the other, (n_pairs,).
+    """
+    coincide = pair_squares(position.T, first, second) == 0.0
+    return first[coincide], second[coincide]
 
 
 def coincident_pairs(position: Floats, table: CollisionTable) -> Pairs:
@@ -15,12 +28,15 @@ def coincident_pairs(position: Floats, table: CollisionTable) -> Pairs:
     Args:
         position: atom centres [length], (n_atoms, 3).
         table: the declared collisions.
+
+    Returns:
+        The pairs, first < second; one may come more than once.
     """
     found = [
         _within(position, block) if isinstance(block, Within) else _between(position, block) for block in table.blocks
     ]
-    first, second = np.concatenate(found, axis=1)
-    return first, second
+    one, other = np.concatenate(found, axis=1)
+    return np.minimum(one, other), np.maximum(one, other)
 
 
 def _within(position: Floats, block: Within) -> Pairs:
@@ -50,9 +66,19 @@ def _between(position: Floats, block: Between) -> Pairs:
 
 def _crowds(position: Floats) -> tuple[Indices, Indices, Indices]:
     """Sort by place: the atoms order[start[n]:stop[n]], ascending, are a crowd of two or more at one place."""
-    order = np.lexsort(position.T)
+    place = np.stack([_places(coordinate) for coordinate in position.T])
+    order = np.lexsort(place)
     is_new = np.ones(order.size + 1, dtype=bool)
-    is_new[1:-1] = (position[order[1:]] != position[order[:-1]]).any(axis=1)
+    is_new[1:-1] = (place[:, order[1:]] != place[:, order[:-1]]).any(axis=0)
     bounds = np.flatnonzero(is_new)
     start, stop = bounds[:-1], bounds[1:]
     return order, start[stop - start > 1], stop[stop - start > 1]
+
+
+def _places(coordinate: Floats) -> Indices:
+    """Number the places along an axis; those so near each other that the square of the way between is zero are one."""
+    order = np.argsort(coordinate)
+    gap = np.diff(coordinate[order])
+    place = np.zeros(order.size, dtype=np.int64)
+    place[order[1:]] = np.cumsum(gap * gap > 0.0)
+    return place

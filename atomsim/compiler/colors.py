@@ -8,6 +8,7 @@ from atomsim.compiler.selections import Selections, lay_out
 from atomsim.core.model import Floats
 from atomsim.scene.css_colors import CSS_COLORS
 from atomsim.scene.language import Scene
+from atomsim.scene.selection import parse_selection
 
 PALETTE = ("#4682b4", "#b22222", "#2e8b57", "#daa520", "#8a5ba5", "#d2691e", "#5f9ea0", "#c0538c")
 """Colours of groups that do not choose one, in order of declaration."""
@@ -25,12 +26,33 @@ def atom_color(scene: Scene) -> Floats:
     layouts = lay_out(scene)
     n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
     color = np.empty((n_atoms, 3))
-    for number, (name, group) in enumerate(scene.groups.items()):
-        color[layouts[name].start : layouts[name].stop] = _rgb(group.color or PALETTE[number % len(PALETTE)])
+    for name, own in _own_colors(scene).items():
+        color[layouts[name].start : layouts[name].stop] = _rgb(own)
     selections = Selections(layouts, n_atoms)
     for selection, chosen in scene.render.colors.items():
         color[selections.atoms((selection,))] = _rgb(chosen)
     return color
+
+
+def group_colors(scene: Scene) -> dict[str, str]:
+    """Return the colour of every group as #rrggbb: that of its atoms, unless `render.colors` singles some of them out.
+
+    Args:
+        scene: a scene that compiles.
+    """
+    colors = _own_colors(scene)
+    for selection, chosen in scene.render.colors.items():
+        part = parse_selection(selection)
+        if not part.axes:
+            colors |= dict.fromkeys(colors if part.group == "all" else (part.group,), chosen)
+    return {name: hex_color(color) for name, color in colors.items()}
+
+
+def _own_colors(scene: Scene) -> dict[str, str]:
+    """Return the colour that every group chooses, or else one of the palette."""
+    return {
+        name: group.color or PALETTE[number % len(PALETTE)] for number, (name, group) in enumerate(scene.groups.items())
+    }
 
 
 def hex_color(color: str) -> str:

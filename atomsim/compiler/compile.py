@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from itertools import chain
 from typing import TypeVar, assert_never
 
 import numpy as np
 
-from atomsim.compiler.coincident import coincident_pairs
-from atomsim.compiler.colors import PALETTE, hex_color
+from atomsim.compiler import checks
+from atomsim.compiler.checks import Complaint
+from atomsim.compiler.coincident import Pairs, coincident_among, coincident_pairs
+from atomsim.compiler.colors import group_colors
 from atomsim.compiler.pairs import RuleError, expand
-from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out, place_of
 from atomsim.compiler.shapes import place, unit
-from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import (
     Between,
     BondTable,
@@ -54,12 +54,8 @@ from atomsim.scene.language import (
 )
 from atomsim.scene.source import KeyPath, Source
 
-LARGEST = 1e150
-"""The largest coordinate, velocity or desired distance: squares of differences stay finite."""
-
-TOO_LARGE = "too large to compute with"
-
 Array = TypeVar("Array", Floats, Indices)
+Entry = TypeVar("Entry")
 
 
 def compile_scene(scene: Scene, source: Source | None = None) -> tuple[Model, State]:
@@ -92,21 +88,19 @@ class _Compiler:
         scene = self._scene
         layouts = lay_out(scene)
         n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
-        self._require_room(n_atoms)
-        if scene.time_step > LARGEST:
-            self._complain(("time_step",), f"is {TOO_LARGE}")
+        self._stop_on(checks.too_many_atoms(n_atoms))
         self._selections = Selections(layouts, n_atoms)
         with np.errstate(over="ignore", invalid="ignore"):  # what grows too large is reported next
             placed = [place(group) for group in scene.groups.values()]
             self._placed = np.concatenate([position for position, _ in placed])
             velocity = np.concatenate([velocity for _, velocity in placed])
             self._position = _jittered(self._placed, scene.jitter)
-            self._require_finite(layouts, velocity)
-        self._require_room_for_pairs()
+        self._stop_on(checks.too_large_numbers(scene, layouts, self._position, velocity))
+        self._stop_on(checks.too_many_bonds(scene.bonds, self._selections))
         bonds = [self._bond_table(name, entry) for name, entry in scene.bonds.items()]
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
         forces = [self._force(name, entry) for name, entry in scene.forces.items()]
-        self._check_colors()
+        self._complain_all(checks.colors_of_nothing(scene, self._selections))
         self._stop_if_wrong()
         model = Model(
             title=scene.title,
@@ -121,16 +115,10 @@ class _Compiler:
 
     def _spans(self, layouts: dict[str, GroupLayout]) -> tuple[GroupSpan, ...]:
         """Give every group its place, colour and origin."""
-        chosen = self._scene.render.colors
+        colors = group_colors(self._scene)
         return tuple(
-            GroupSpan(
-                name=name,
-                start=layouts[name].start,
-                stop=layouts[name].stop,
-                color=hex_color(chosen.get(name) or group.color or PALETTE[number % len(PALETTE)]),
-                origin=self._origin("groups", name),
-            )
-            for number, (name, group) in enumerate(self._scene.groups.items())
+            GroupSpan(name, layout.start, layout.stop, colors[name], self._origin("groups", name))
+            for name, layout in layouts.items()
         )
 
     def _bond_table(self, name: str, bonds: Bonds) -> BondTable | None:
@@ -147,7 +135,7 @@ class _Compiler:
         except MemoryError as error:
             self._complain(path, f"binds too much: {error}")
             return None
-        if self._found_coincident(path, first, second, "bound"):
+        if self._meets(path, "bound", lambda position: coincident_among(position, first, second)):
             return None
         initial = pair_squares(self._placed.T, first, second)
         rest_squared = self._rest_squared(path, bonds.rest, initial)
@@ -161,12 +149,10 @@ class _Compiler:
         except SelectionError as error:
             self._complain_of_selection(path, collisions, error)
             return None
-        if not n_collision_pairs(table):
-            key, why = _why_nothing_collides(table)
-            self._complain((*path, *key), f"nothing can collide: {why}")
+        if self._complain_all(checks.nothing_collides(path, table)):
             return None
-        first, second = coincident_pairs(self._placed, table)
-        return None if self._found_coincident(path, first, second, "set to collide") else table
+        meets = self._meets(path, "set to collide", lambda position: coincident_pairs(position, table))
+        return None if meets else table
 
     def _blocks(self, collisions: Collisions) -> Iterable[Within | Between]:
         """Yield the blocks of pairs that a declaration is the union of."""
@@ -216,18 +202,9 @@ class _Compiler:
             self._complain_of_selection(path, force, error)
             return None
 
-    def _check_colors(self) -> None:
-        """Complain of colours for atoms that do not exist; who draws asks for them again."""
-        for selection in self._scene.render.colors:
-            try:
-                self._selections.atoms((selection,))
-            except SelectionError as error:
-                self._complain(("render", "colors", selection), str(error))
-
     def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> TetherForce | None:
         path = ("forces", origin.name)
-        if max(map(abs, force.target)) > LARGEST:
-            self._complain((*path, "target"), f"its numbers are {TOO_LARGE}")
+        if self._complain_all(checks.too_large_target(path, force.target)):
             return None
         initial = squared_distance(self._placed[atoms].T, np.array(force.target)[:, None])
         rest_squared = self._rest_squared(path, force.rest, initial)
@@ -237,46 +214,16 @@ class _Compiler:
         """Return r² per pair: the squared initial distance, without the detour through the root, or a number's."""
         if rest == "initial":
             return initial
-        if rest > LARGEST:
-            self._complain((*path, "rest"), f"is {TOO_LARGE}")
+        self._complain_all(checks.too_large_rest(path, rest))
         return np.full(initial.shape, rest * rest)
 
-    def _found_coincident(self, path: KeyPath, first: Indices, second: Indices, what: str) -> bool:
-        """Complain of a pair at distance zero, which has no direction to push in; before or after jitter."""
-        for position in (self._placed, self._position):
-            same = np.flatnonzero(pair_squares(position.T, first, second) == 0.0)
-            if same.size:
-                one, other = (self._selections.expression(int(ends[same[0]])) for ends in (first, second))
-                more = " (and so do others)" if same.size > 1 else ""
-                self._complain(path, f"{one} and {other} are {what} but start at the same place{more}")
-                return True
-        return False
-
-    def _require_room(self, n_atoms: int) -> None:
-        """Refuse more atoms than fit into memory, before making any."""
-        self._complain_if(("groups",), shortage(n_atoms * BYTES_PER_ATOM, f"{n_atoms:,} atoms"))
-        self._stop_if_wrong()
-
-    def _require_room_for_pairs(self) -> None:
-        """Refuse rules whose pairs can be counted beforehand and do not fit into memory, before making any."""
-        n_before = 0
-        for name, bonds in self._scene.bonds.items():
-            try:
-                n_pairs = n_before + n_countable_pairs(bonds, self._selections)
-            except SelectionError:
-                continue  # told when the pairs are made
-            what = f"{n_pairs:,} bonds" + (", with those before," if n_before else "")
-            self._complain_if(("bonds", name, "rule"), shortage(n_pairs * BYTES_PER_PAIR, what))
-            self._stop_if_wrong()
-            n_before = n_pairs
-
-    def _require_finite(self, layouts: dict[str, GroupLayout], velocity: Floats) -> None:
-        """Refuse numbers that are finite one by one, but not where they put the atoms or not when they are squared."""
-        for name, layout in layouts.items():
-            atoms = slice(layout.start, layout.stop)
-            if not all((np.abs(numbers[atoms]) <= LARGEST).all() for numbers in (self._position, velocity)):
-                self._complain(("groups", name), f"its numbers are {TOO_LARGE}")
-        self._stop_if_wrong()
+    def _meets(self, path: KeyPath, what: str, coincident: Callable[[Floats], Pairs]) -> bool:
+        """Complain of atoms that start at one place, before or after jitter; return whether there are any."""
+        positions = (self._placed,) if self._scene.jitter is None else (self._placed, self._position)
+        return any(
+            self._complain_all(checks.at_one_place(path, coincident(position), what, self._selections))
+            for position in positions
+        )
 
     def _origin(self, section: str, name: str) -> Origin:
         mark = self._source.mark((section, name))
@@ -285,15 +232,23 @@ class _Compiler:
     def _complain(self, path: KeyPath, message: str) -> None:
         self._problems.append(self._source.problem(path, message))
 
-    def _complain_if(self, path: KeyPath, message: str | None) -> None:
-        if message is not None:
+    def _complain_all(self, complaints: Iterable[Complaint]) -> bool:
+        """Note what a check found; return whether it found anything."""
+        n_before = len(self._problems)
+        for path, message in complaints:
             self._complain(path, message)
+        return len(self._problems) > n_before
 
     def _complain_of_selection(
         self, path: KeyPath, declaration: Bonds | Collisions | Force, error: SelectionError
     ) -> None:
         """Complain at the place in a declaration where the selection was written."""
         self._complain((*path, *place_of(error.expression, declaration)), str(error))
+
+    def _stop_on(self, complaints: Iterable[Complaint]) -> None:
+        """Report all mistakes so far, if a check found some with which it makes no sense to go on."""
+        self._complain_all(complaints)
+        self._stop_if_wrong()
 
     def _stop_if_wrong(self) -> None:
         if self._problems:
@@ -314,14 +269,6 @@ def _jittered(position: Floats, jitter: Jitter | None) -> Floats:
     return position + jitter.amplitude * noise.reshape(position.shape)
 
 
-def _why_nothing_collides(table: CollisionTable) -> tuple[KeyPath, str]:
-    """Return the key to blame for a table without pairs, and the reason."""
-    gaps = [block.min_gap for block in table.blocks if isinstance(block, Within) and block.atoms.size > 1]
-    if gaps:
-        return ("min_gap",), f"no two atoms here are {gaps[0]} or more places apart"
-    return (), "there are no two different atoms here"
-
-
 def _parts(key: str) -> KeyPath:
     return tuple(int(part) if part.isdigit() else part for part in key.split("."))
 
@@ -335,6 +282,3 @@ def _read_only(array: Array) -> Array:
     """Make an array safe to share."""
     array.setflags(write=False)
     return array
-
-
-Entry = TypeVar("Entry")

@@ -27,6 +27,21 @@ def test_colors_of_selections_cover_groups_and_each_other():
     assert color.tolist() == [[1, 1, 1], [0, 1, 0], [0, 0, 0], [0, 0, 0]]
 
 
+@pytest.mark.parametrize(
+    ("colors", "expected"),
+    [
+        ({}, ["#ff0000", PALETTE[1]]),
+        ({"left[0]": "white", "right[:]": "white"}, ["#ff0000", PALETTE[1]]),
+        ({"all": "black"}, ["#000000", "#000000"]),
+        ({"all": "black", " left": "White"}, ["#ffffff", "#000000"]),
+        ({"left": "white", "all": "black"}, ["#000000", "#000000"]),
+    ],
+)
+def test_a_group_is_written_down_in_the_color_of_its_atoms(colors, expected):
+    model, _ = compile_scene(scene_of(GROUPS, render={"colors": colors}))
+    assert [group.color for group in model.groups] == expected
+
+
 def test_a_color_for_atoms_that_do_not_exist_is_a_mistake():
     scene = scene_of(GROUPS, render={"colors": {"left[3]": "red"}})
     with pytest.raises(SceneError, match=r"render\.colors\.left\[3\]: `left\[3\]` is out of range"):

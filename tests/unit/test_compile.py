@@ -132,24 +132,24 @@ def test_bound_atoms_at_the_same_place() -> None:
 
 
 @pytest.mark.parametrize(
-    ("collisions", "pair"),
+    ("collisions", "pair", "more"),
     [
-        ({"within": "a"}, "a[1] and a[3]"),
-        ({"within": "a", "min_gap": 2}, "a[1] and a[3]"),
-        ({"within": "a[1:]"}, "a[1] and a[3]"),
-        ({"between": ["b", "a"]}, "b[1] and a[3]"),
-        ({"between": ["b", ["a", "b"]]}, "b[1] and a[3]"),
-        ({"among": ["a[0]", "b", "a[3:]"]}, "b[1] and a[3]"),
-        ({"between": ["a", "a"]}, "a[1] and a[3]"),
-        ({"between": ["a", "a[1]"]}, "a[3] and a[1]"),
+        ({"within": "a"}, "a[1] and a[3]", ""),
+        ({"within": "a", "min_gap": 2}, "a[1] and a[3]", ""),
+        ({"within": "a[1:]"}, "a[1] and a[3]", ""),
+        ({"between": ["b", "a"]}, "b[1] and a[3]", " (and so do others)"),
+        ({"between": ["b", ["a", "b"]]}, "b[1] and a[3]", ""),
+        ({"between": ["b", "a[3]"]}, "b[1] and a[3]", ""),
+        ({"among": ["a[0]", "b", "a[3:]"]}, "b[1] and a[3]", ""),
+        ({"between": ["a", "a"]}, "a[1] and a[3]", ""),
+        ({"between": ["a", "a[1]"]}, "a[1] and a[3]", ""),
     ],
 )
-def test_colliding_atoms_at_the_same_place(collisions: dict[str, Any], pair: str) -> None:
+def test_colliding_atoms_at_the_same_place(collisions: dict[str, Any], pair: str, more: str) -> None:
     groups = {"b": atoms_at((9, 0, 0), (5, 5, 5)), "a": atoms_at((0, 0, 0), (5, 5, 5), (2, 0, 0), (5, 5, 5), (7, 7, 7))}
-    (message,) = mistakes(groups, collisions={"c": collisions})
-    assert message.removesuffix(" (and so do others)") == (
-        f"collisions.c: {pair} are set to collide but start at the same place"
-    )
+    assert mistakes(groups, collisions={"c": collisions}) == [
+        f"collisions.c: {pair} are set to collide but start at the same place{more}"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -160,6 +160,34 @@ def test_atoms_at_the_same_place_that_do_not_collide_are_fine(collisions: dict[s
     groups = {"b": atoms_at((9, 0, 0), (5, 5, 5)), "a": atoms_at((0, 0, 0), (5, 5, 5), (2, 0, 0), (5, 5, 5), (7, 7, 7))}
     model, _ = compiled(groups, collisions={"c": collisions})
     assert len(model.collisions) == 1
+
+
+@pytest.mark.parametrize(("apart", "is_refused"), [(1e-170, True), (1.5e-162, True), (1.6e-162, False)])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_atoms_are_at_one_place_where_the_square_of_their_distance_is_zero(
+    apart: float, is_refused: bool, axis: int
+) -> None:
+    groups = {"a": atoms_at((0, 0, 0), tuple(-apart * (axis == other) for other in range(3)))}
+    sections = {"bonds": {"b": {"within": "a", "rule": "all-pairs"}}, "collisions": {"c": {"within": "a"}}}
+    if is_refused:
+        assert mistakes(groups, **sections) == [
+            "bonds.b: a[0] and a[1] are bound but start at the same place",
+            "collisions.c: a[0] and a[1] are set to collide but start at the same place",
+        ]
+    else:
+        compiled(groups, **sections)
+
+
+def test_atoms_that_jitter_puts_at_one_place() -> None:
+    """So far out that floats are 8 apart: a jitter of up to 6 moves an atom by 8 or not at all."""
+    groups = {"a": atoms_at((4e16, 4e16, 4e16), (4e16 + 8.0, 4e16, 4e16))}
+    sections = {"bonds": {"b": {"within": "a", "rule": "all-pairs"}}, "collisions": {"c": {"within": "a"}}}
+    compiled(groups, **sections)
+    compiled(groups, jitter={"amplitude": 6.0, "seed": 1}, **sections)
+    assert mistakes(groups, jitter={"amplitude": 6.0, "seed": 4}, **sections) == [
+        "bonds.b: a[0] and a[1] are bound but start at the same place",
+        "collisions.c: a[0] and a[1] are set to collide but start at the same place",
+    ]
 
 
 def test_a_crowd_at_one_place_is_told_at_once() -> None:

@@ -66,7 +66,7 @@ class GroupBase(Declaration):
     spin: Spin | None = None
     """Initial rotation {axis, rate} about the centroid."""
     color: Color | None = None
-    """Colour in pictures: a CSS name or #rrggbb; by default each group gets its own."""
+    """Colour in pictures: a CSS name or #rrggbb; by default each group gets its own. `render.colors` covers it."""
 
 
 class StringGroup(GroupBase):
