@@ -64,7 +64,7 @@ class Render(Declaration):
     camera: Camera = Field(default_factory=Camera)
     """From where the scene is seen."""
     colors: Colors = Field(default_factory=dict)
-    """Colours by selection, such as `ring[0:5]: gold`. They cover those of groups, the later the earlier: `all` first."""
+    """Colours by selection, such as `ring[0:5]: gold`. They cover those of groups, later ones earlier: `all` first."""
     background: Color = "#f5f5f7"
     """Colour behind the atoms."""
 
