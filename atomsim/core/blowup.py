@@ -11,7 +11,7 @@ from atomsim.core.collisions import CONTACT_SQUARED, table_pairs_near
 from atomsim.core.energy import SLACK, EnergyBudget, total_energy
 from atomsim.core.forces import prepare_forces
 from atomsim.core.model import Floats, Frame, Indices, Model, Observables, Origin, State, atom_name
-from atomsim.core.near import squared_distance
+from atomsim.core.near import pair_squares, squared_distance
 from atomsim.core.stiffness import is_damped_too_much, largest_time_step
 
 FLOWN_APART = 1e6
@@ -56,9 +56,12 @@ def explain(model: Model, first: State, before: State, after: State, lost: str =
 
     Returns:
         A few lines: round, atom and group; the declaration that pushed it hardest, and against which atom; the largest
-        time step that the stiffness allows; what to change.
+        time step that the stiffness allows, unless two atoms at one place are to blame; what to change.
     """
     with np.errstate(all="ignore"):
+        met = _meeting(model, before) or _meeting(model, after)
+        if met is not None:
+            return met
         atom = _first_lost(after)
         size, origin, partner = max(_pushes(model, before, atom), key=lambda push: push[0], default=(0.0, None, None))
     lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} {lost}"]
@@ -91,6 +94,25 @@ def _first_lost(state: State) -> int:
     """Return the first atom that is not finite, or else the fastest."""
     is_lost = ~(np.isfinite(state.position) & np.isfinite(state.velocity)).all(axis=1)
     return int(is_lost.argmax()) if is_lost.any() else int(np.abs(state.velocity).max(axis=1).argmax())
+
+
+def _meeting(model: Model, state: State) -> str | None:
+    """Report two atoms, bound or colliding, that are at one place, where their force is 0/0, if there are any."""
+    if not np.isfinite(state.position).all():
+        return None
+    position = np.ascontiguousarray(state.position.T)
+    pairs = [(table.origin, table.first, table.second) for table in model.bonds]
+    pairs += [(table.origin, *table_pairs_near(table, position, 2.0)) for table in model.collisions]
+    for origin, first, second in pairs:
+        same = np.flatnonzero(pair_squares(position, first, second) == 0.0)
+        if same.size:
+            one, other = (atom_name(int(atoms[same[0]]), model.groups) for atoms in (first, second))
+            return (
+                f"the simulation blew up in round {state.round_index}: {one} and {other} met exactly\n"
+                f"  {origin} acts between them, and at one place a force has no direction\n"
+                "  remedy: another time_step or a tiny jitter, so that they miss each other; for a bond, more rest"
+            )
+    return None
 
 
 def _pushes(model: Model, state: State, atom: int) -> Iterator[tuple[float, Origin, int | None]]:

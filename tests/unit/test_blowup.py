@@ -78,6 +78,31 @@ def test_a_collision_out_of_nearly_nothing() -> None:
     )
 
 
+def test_bound_atoms_that_meet_exactly() -> None:
+    """A bond of rest 0 moves both by τ times their distance: at τ = 0.5 both are in the middle after a round."""
+    bonds = {
+        "calm": {"between": ["pair", "calm"], "rule": "all-pairs"},
+        "pull": {"within": "pair", "rule": "all-pairs", "rest": 0},
+    }
+    assert report_of({**PAIR, "calm": atoms_at((0.75, 0, 9))}, 0.5, bonds=bonds) == (
+        "the simulation blew up in round 1: pair[0] (atom 1) and pair[1] (atom 2) met exactly\n"
+        "  bonds.pull (<scene>:1) acts between them, and at one place a force has no direction\n"
+        "  remedy: another time_step or a tiny jitter, so that they miss each other; for a bond, more rest"
+    )
+
+
+@pytest.mark.parametrize("magnitude", [0, 1])
+def test_colliding_atoms_that_meet_exactly(magnitude: float) -> None:
+    """Whether their infinite energy tells, or, where a torque hides it, the round after."""
+    groups = {**PAIR, "a": atoms_at((-3, 0, 0), velocity=[3, 0, 0]), "b": atoms_at((3, 0, 0), velocity=[-3, 0, 0])}
+    forces = {"t": {"kind": "torque", "acts_on": "calm", "about": "pair", "axis": "z", "magnitude": magnitude}}
+    text = report_of(groups, 1.0, collisions={"c": {"between": ["a", "b"]}}, forces=forces if magnitude else {})
+    assert text.splitlines()[:2] == [
+        "the simulation blew up in round 1: a[0] (atom 3) and b[0] (atom 4) met exactly",
+        "  collisions.c (<scene>:1) acts between them, and at one place a force has no direction",
+    ]
+
+
 def test_an_atom_that_nothing_pushes() -> None:
     text = report_of({"a": atoms_at((0, 0, 0), velocity=[1e9, 0, 0])}, 1.0)
     assert text.splitlines()[:2] == [
