@@ -97,7 +97,11 @@ def _describe(first_wrong: int, difference: Difference | None) -> str:
 
 
 def write_golden(golden: Golden, path: Path) -> None:
-    """Write a golden as text, one round a line."""
+    """Write a golden as text, one round a line, whole or not at all.
+
+    Raises:
+        OSError: the disk does not take it; what stood under the name before is untouched.
+    """
     document = {
         "golden": LAYOUT,
         "digests": {str(number): digest for number, digest in golden.digests.items()},
@@ -107,8 +111,11 @@ def write_golden(golden: Golden, path: Path) -> None:
         },
     }
     temporary = path.with_name(path.name + ".new")
-    temporary.write_text(json.dumps(document, indent=0) + "\n")
-    temporary.replace(path)
+    try:
+        temporary.write_text(json.dumps(document, indent=0) + "\n")
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def read_golden(path: Path) -> Golden:

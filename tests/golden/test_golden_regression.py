@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import re
 import shutil
@@ -189,6 +190,22 @@ def test_the_first_round_that_differs_and_the_atom_in_the_next_full_frame(pair, 
     assert found is not None
     assert found.startswith(said)
     assert found.endswith("most a[1] (atom 1) by 1e-12")
+
+
+def test_a_full_disk_leaves_the_old_golden_and_no_litter(cli, tmp_path, pair, monkeypatch):
+    scene, _, _ = pair
+    folder = tmp_path / "golden"
+    assert cli("golden", "record", scene, "--into", folder)[0] == 0
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+
+    def half(self, text):
+        self.write_bytes(text[: len(text) // 2].encode())
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", half)
+    code, _, err = cli("golden", "record", scene, "--into", folder, "--reason", "another")
+    assert (code, err) == (1, f"{folder}: cannot be written: No space left on device\n")
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 
 def test_a_run_of_other_rounds_than_its_golden(cli, tmp_path, pair):
