@@ -110,7 +110,7 @@ def _meeting(model: Model, state: State) -> str | None:
             return (
                 f"the simulation blew up in round {state.round_index}: {one} and {other} met exactly\n"
                 f"  {origin} acts between them, and at one place a force has no direction\n"
-                "  remedy: another time_step or a tiny jitter, so that they miss each other; for a bond, more rest"
+                "  remedy: another time_step or a tiny jitter, so that they miss each other; for a bond, a larger rest"
             )
     return None
 

@@ -87,7 +87,7 @@ def test_bound_atoms_that_meet_exactly() -> None:
     assert report_of({**PAIR, "calm": atoms_at((0.75, 0, 9))}, 0.5, bonds=bonds) == (
         "the simulation blew up in round 1: pair[0] (atom 1) and pair[1] (atom 2) met exactly\n"
         "  bonds.pull (<scene>:1) acts between them, and at one place a force has no direction\n"
-        "  remedy: another time_step or a tiny jitter, so that they miss each other; for a bond, more rest"
+        "  remedy: another time_step or a tiny jitter, so that they miss each other; for a bond, a larger rest"
     )
 
 

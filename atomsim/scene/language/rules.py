@@ -52,11 +52,11 @@ class NeighbourBonds(BondBase):
     """Atoms next to each other along a string: threads and rings."""
 
     rule: Literal["neighbour"]
-    """Pairs whose indices differ by at most `reach`."""
+    """Pairs at most `reach` places apart in the selection."""
     within: Selection
     """A group (or a list of groups): the rule applies inside each."""
     reach: Count = 1
-    """The largest index difference that is bound."""
+    """How many places apart atoms are bound at most, counted in the selection: in `a[::2]`, `a[2]` is next to `a[0]`."""
     closed: bool | None = None
     """Whether the last atom is next to the first; by default true for a whole ring or polygon, else false."""
 
@@ -93,7 +93,7 @@ class Collisions(Declaration):
     within: Selection | None = None
     """A group (or a list of groups): atoms inside each collide with one another."""
     min_gap: Count | None = None
-    """With `within`: the smallest index difference that collides (default 1)."""
+    """With `within`: how many places apart in the selection atoms collide at least (default 1); not around a ring."""
     between: Pair | None = None
     """Two groups: every atom of one collides with every atom of the other."""
     among: Annotated[tuple[Selection, ...], Field(strict=False, min_length=2)] | None = None
