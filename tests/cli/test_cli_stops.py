@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from support.process import finish, start
+from support.process import finish, heed, start
 
 from atomsim.trajectory import Trajectory, journal_path
 
@@ -71,7 +71,12 @@ main()
 def test_a_second_signal_does_not_wait(tmp_path):
     """The first one decides the exit code; the frames are in the journal."""
     done = subprocess.run(
-        [sys.executable, "-c", SECOND_SIGNAL, *LONG_RUN], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-c", SECOND_SIGNAL, *LONG_RUN],
+        cwd=tmp_path,
+        preexec_fn=heed,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 143
     assert done.stderr == "stopped at once; to go on: atomsim run --resume out.h5\n"
@@ -89,6 +94,7 @@ def test_ctrl_c_at_any_moment_of_the_start_is_quiet(tmp_path):
         process = subprocess.Popen(
             [sys.executable, "-c", READY, *LONG_RUN, "-o", f"{moment}.h5"],
             cwd=tmp_path,
+            preexec_fn=heed,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -10,6 +11,12 @@ from pathlib import Path
 from typing import Any
 
 COMMAND = [sys.executable, "-m", "atomsim"]
+
+
+def heed() -> None:
+    """Let signals end the process that is about to begin; behind `nohup` or in the background it inherits deafness."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def finish(*arguments: str | Path, cwd: Path, before: Callable[[], None] | None = None, **variables: str) -> Any:
@@ -36,7 +43,12 @@ def finish(*arguments: str | Path, cwd: Path, before: Callable[[], None] | None 
 
 
 def start(*arguments: str | Path, cwd: Path) -> subprocess.Popen[str]:
-    """Start a command and return at once."""
+    """Start a command that heeds signals, and return at once."""
     return subprocess.Popen(
-        [*COMMAND, *arguments], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8"
+        [*COMMAND, *arguments],
+        cwd=cwd,
+        preexec_fn=heed,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
     )
