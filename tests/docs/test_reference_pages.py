@@ -117,6 +117,15 @@ def test_every_equation_names_who_computes_it() -> None:
     assert all(re.fullmatch(r"`atomsim\.core\.\w+\.\w+`", row) for row in named)
 
 
+def type_of(dataset: h5py.Dataset) -> str:
+    """Return the type of a dataset as the page writes it; all texts are of fixed length."""
+    text = h5py.check_string_dtype(dataset.dtype)
+    if text is None:
+        return str(dataset.dtype)
+    assert text.length is not None
+    return {"ascii": "ASCII", "utf-8": "UTF-8"}[text.encoding]
+
+
 def test_trajectory_page_names_every_dataset(tmp_path: Path) -> None:
     atomsim.run(atomsim.load(ROOT / "scenes" / "rods.yaml", ["rounds=1"]), tmp_path / "out.h5")
     shared = re.compile(r"(velocity|observables/\w+)/(step|time)$")
@@ -126,8 +135,10 @@ def test_trajectory_page_names_every_dataset(tmp_path: Path) -> None:
         if isinstance(item, h5py.Dataset) and not shared.search(name):
             found.add(f"/{name}")
 
+    rows = re.findall(r"^\| `(/[\w/]+)` \| ([^ ]+)", text_of("docs/trajectory-file.md"), re.MULTILINE)
     with h5py.File(tmp_path / "out.h5") as file:
         file.visititems(visit)
-    page = set(re.findall(r"^\| `(/[\w/]+)` \|", text_of("docs/trajectory-file.md"), re.MULTILINE))
+        assert [(path, type_of(file[path])) for path, _ in rows] == rows
+    page = {path for path, _ in rows}
     assert found - {"/particles/trajectory/position/step", "/particles/trajectory/position/time"} <= page
     assert page <= found | {"/particles/trajectory/position/step", "/particles/trajectory/position/time"}
