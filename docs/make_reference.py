@@ -245,7 +245,7 @@ def _parameters(command: Any) -> str:
 def _spelling(parameter: Any) -> str:
     """Return how a parameter is typed: `--output`, `-o` OUTPUT."""
     if parameter.param_type_name == "argument":
-        return f"`{parameter.metavar or parameter.name.upper()}`"
+        return f"`{parameter.metavar or parameter.name.upper()}{'...' if parameter.nargs == -1 else ''}`"
     names = ", ".join(f"`{name}`" for name in parameter.opts)
     return names if parameter.is_flag else f"{names} `{parameter.metavar or parameter.name.upper()}`"
 

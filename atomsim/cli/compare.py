@@ -13,12 +13,14 @@ from atomsim.cli.output import say, tell
 
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="A trajectory.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same atoms.")],
-    tolerance: Annotated[float, typer.Option(min=0.0, help="How far numbers may be apart; 0 compares bits.")] = 0.0,
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another trajectory of the same atoms.")],
+    tolerance: Annotated[
+        float, typer.Option(metavar="DIFFERENCE", min=0.0, help="How far numbers may be apart; 0 compares bits.")
+    ] = 0.0,
 ) -> None:
-    """Say whether two trajectories are identical, or where and by how much they first differ.
+    """Say whether two trajectories are identical.
 
-    Exit code 1 if they differ.
+    If they are not, say where and by how much they first differ; exit code 1.
 
     Example:
 
@@ -46,9 +48,9 @@ def verify(
     backend: Backend = "auto",
     threads: Threads = None,
 ) -> None:
-    """Compute a trajectory again from the scene inside it and compare, bit for bit.
+    """Compute a trajectory again and compare, bit for bit.
 
-    Exit code 1 if it differs.
+    It is computed from the scene inside it; positions and velocities are compared. Exit code 1 if it differs.
 
     Example:
 

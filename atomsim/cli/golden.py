@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from atomsim.core.model import Frame, Model
 
-golden = typer.Typer(help="Golden trajectories: record what a scene gives, and check that it still does.")
+golden = typer.Typer(help="Record what scenes give, and check that they still do.")
 
-Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE...", help="Scenes, YAML files.")]
-Folder = Annotated[Path, typer.Option("--into", help="The folder of the goldens.")]
+Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files.")]
+Folder = Annotated[Path, typer.Option("--into", metavar="FOLDER", help="The folder of the goldens.")]
 
 DEFAULT_FOLDER = Path("tests/golden")
 
@@ -28,13 +28,13 @@ DEFAULT_FOLDER = Path("tests/golden")
 def record(
     scenes: Scenes,
     into: Folder = DEFAULT_FOLDER,
-    reason: Annotated[str, typer.Option(help="Why the goldens change; goes into the log.")] = "",
+    reason: Annotated[str, typer.Option(metavar="WHY", help="Why the goldens change; goes into the log.")] = "",
 ) -> None:
     """Record what scenes give now. A golden that exists is replaced only for a reason, which is logged.
 
     Example:
 
-    atomsim golden record scenes/rods.yaml --into tests/golden --reason "first recording"
+    atomsim golden record scenes/rods.yaml --into tests/golden --reason "new law"
     """
     from atomsim.errors import InputError, RunError
     from atomsim.golden import LOG, golden_path, record_golden, write_golden

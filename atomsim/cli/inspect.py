@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 
 def check(
-    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE...", help="Scenes, YAML files.")],
+    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files.")],
     settings: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scenes; may be repeated."),
     ] = None,
 ) -> None:
-    """Validate scenes, compile them, and describe what they would run.
+    """Find the mistakes of scenes, or describe what they would run.
 
     Every mistake is one line `file:line:column: path: message`; exit code 2 if there is any.
 
@@ -55,9 +55,11 @@ def check(
 
 def show(
     trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
-    scene: Annotated[bool, typer.Option("--scene", help="Print the scene that made it, and nothing else.")] = False,
+    scene: Annotated[
+        bool, typer.Option("--scene", help="Print the scene that made it, to be run again, and nothing else.")
+    ] = False,
 ) -> None:
-    """Say what is in a trajectory; `--scene` prints the scene that made it, to be run again.
+    """Say what is in a trajectory, or print the scene that made it.
 
     Example:
 
@@ -83,7 +85,9 @@ def _scene_of(trajectory: Trajectory) -> str:
 
 
 def schema() -> None:
-    """Print the JSON Schema of the scene language, for editors and other tools.
+    """Print the JSON Schema of the scene language.
+
+    Editors complete and check scenes with it.
 
     Example:
 

@@ -11,5 +11,6 @@ Backend: TypeAlias = Annotated[
 ]
 
 Threads: TypeAlias = Annotated[
-    int | None, typer.Option(help="Threads to compute with (Numba only); by default as many as are worth it.")
+    int | None,
+    typer.Option(metavar="N", help="Threads to compute with (Numba only); by default as many as are worth it."),
 ]

@@ -13,11 +13,14 @@ Part = TypeVar("Part", int, float)
 
 
 def render(
-    trajectories: Annotated[list[Path], typer.Argument(metavar="OUT...", help="Trajectories, one row each.")],
+    trajectories: Annotated[list[Path], typer.Argument(metavar="OUT", help="Trajectories, one row each.")],
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="The picture to write: png, jpg, webp, pdf or svg.  [default: OUT with .png]"
+            "--output",
+            "-o",
+            metavar="PICTURE",
+            help="The picture to write: png, jpg, webp, pdf or svg.  [default: OUT with .png]",
         ),
     ] = None,
     rounds: Annotated[

@@ -19,10 +19,14 @@ DEFAULT_OUTPUT = Path("out.h5")
 
 
 def run(
-    scene: Annotated[Path | None, typer.Argument(help="The scene, a YAML file.", show_default=False)] = None,
-    output: Annotated[Path, typer.Option("--output", "-o", help="The trajectory to write.")] = DEFAULT_OUTPUT,
+    scene: Annotated[
+        Path | None, typer.Argument(metavar="SCENE", help="The scene, a YAML file.", show_default=False)
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="OUT", help="The trajectory to write.")
+    ] = DEFAULT_OUTPUT,
     rounds: Annotated[
-        int | None, typer.Option(min=1, help="Iteration rounds to run, instead of what the scene says.")
+        int | None, typer.Option(metavar="N", min=1, help="Iteration rounds to run, instead of what the scene says.")
     ] = None,
     settings: Annotated[
         list[str] | None,

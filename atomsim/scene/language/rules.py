@@ -56,7 +56,7 @@ class NeighbourBonds(BondBase):
     within: Selection
     """A group (or a list of groups): the rule applies inside each."""
     reach: Count = 1
-    """How many places apart atoms are bound at most, counted in the selection: in `a[::2]`, `a[2]` is next to `a[0]`."""
+    """How many places apart in the selection atoms are bound at most: in `a[::2]`, `a[0]` and `a[2]` are neighbours."""
     closed: bool | None = None
     """Whether the last atom is next to the first; by default true for a whole ring or polygon, else false."""
 
