@@ -45,7 +45,6 @@ class JournalWriter:
             os.ftruncate(fd, 0)
             writer._append_json(HEAD, document(header))
             writer._append(BONDS, np.column_stack((header.bond, header.bond_table)).astype("<i4"))
-            os.fsync(fd)
         except BaseException as error:
             writer.discard()
             if isinstance(error, OSError):
@@ -71,7 +70,7 @@ class JournalWriter:
         return self._path
 
     def publish(self, *, replace: bool) -> None:
-        """Give the journal its own name.
+        """Give the journal its own name, once all that is in it is on the disk.
 
         Args:
             replace: whether a journal that has that name may go; one that is being written may not.
@@ -81,6 +80,7 @@ class JournalWriter:
         """
         temporary = disk.beside(self._path, ".tmp")
         try:
+            os.fsync(self._fd)
             if replace and self._path.exists():
                 old = disk.open_locked(self._path)
                 try:

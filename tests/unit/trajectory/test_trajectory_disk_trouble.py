@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import os
 import shutil
 import subprocess
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sample_run import digest_of, frame, go_on, header, holds, record
+from sample_run import digest_of, frame, go_on, header, holds, killed, record
 
 from atomsim.errors import AtomsimError, InputError, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
@@ -209,6 +210,30 @@ try:
 except RunError as error:
     sys.exit(str(error))
 """
+
+
+@pytest.mark.parametrize("successor", [None, b"the journal of the next run"])
+def test_a_journal_that_goes_away_before_it_is_locked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, successor: bytes | None
+) -> None:
+    """Its writer has just finished, and perhaps the next one begun: what was opened is not what has the name now."""
+    path = tmp_path / "out.h5"
+    journal = killed(path, header(40), 20)
+    lock = fcntl.flock
+
+    def lock_late(fd: int, operation: int) -> None:
+        journal.rename(tmp_path / "moved")
+        if successor is not None:
+            journal.write_bytes(successor)
+        lock(fd, operation)
+
+    monkeypatch.setattr(fcntl, "flock", lock_late)
+    with pytest.raises(RunError) as caught:
+        Recorder.resume(path)
+    assert str(caught.value) == (
+        f"{journal}: another atomsim is writing it; wait for that to end, or choose another name with -o"
+    )
+    assert (journal.read_bytes() if journal.exists() else None) == successor
 
 
 @pytest.mark.parametrize("limit", [1_000, 10_000, 25_000, 45_000])
