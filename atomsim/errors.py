@@ -10,10 +10,11 @@ from pathlib import Path
 def command(words: str, path: Path) -> str:
     """Return a command on a file as it can be pasted into a shell, whatever the file is called.
 
-    >>> command("render", Path("my run.h5"))
-    "atomsim render 'my run.h5'"
+    >>> command("render", Path("my run.h5")), command("render", Path("-x.h5"))
+    ("atomsim render 'my run.h5'", 'atomsim render ./-x.h5')
     """
-    return f"atomsim {words} {shlex.quote(str(path))}"
+    name = str(path)
+    return f"atomsim {words} {shlex.quote(f'./{name}' if name.startswith('-') else name)}"
 
 
 class AtomsimError(Exception):

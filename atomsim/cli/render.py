@@ -55,8 +55,10 @@ def render(
         )
         say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
-    picture = trajectories[0].with_suffix(".png") if output is None else output
-    if picture.exists() and not force and not is_our_picture(picture):
+    first = trajectories[0]
+    picture = output or (first.with_suffix(".png") if first.name else first)  # a folder is told of when it is read
+    is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
+    if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
         raise InputError(f"{picture} exists and atomsim did not draw it; add --force to replace it")
     pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels, notice=_notice)
     say(str(picture))

@@ -58,7 +58,9 @@ def run(
 
     if resume is not None and (output != DEFAULT_OUTPUT or force or compress):
         raise InputError("--resume goes on with the file that it names; -o, --force and --compress do not go with it")
-    if scene is None and (resume is None or settings):
+    if scene is None and resume is not None and settings:
+        raise InputError("--resume goes on with the scene inside the trajectory, which --set cannot change")
+    if scene is None and resume is None:
         raise InputError("name a scene to run, as in: atomsim run scenes/rods.yaml")
     started = time.monotonic()
     loaded = None if scene is None else load(scene, settings or ())

@@ -19,6 +19,7 @@ import struct
 import zlib
 from pathlib import Path
 
+from atomsim.errors import InputError
 from atomsim.trajectory.disk import beside
 
 HEAD, BONDS, FRAMES, END, GO_ON = b"atom.hea", b"atom.bon", b"atom.fra", b"atom.end", b"atom.goo"
@@ -29,7 +30,13 @@ PREFIX = struct.Struct("<8sQI")
 
 
 def journal_path(path: Path) -> Path:
-    """Return where the journal of a trajectory lives: next to it."""
+    """Return where the journal of a trajectory lives: next to it.
+
+    Raises:
+        InputError: the path has no name, such as `.`
+    """
+    if not path.name:
+        raise InputError(f"{path}: this is a folder, not a trajectory")
     return beside(path, ".part")
 
 

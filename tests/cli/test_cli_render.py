@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -147,3 +148,26 @@ def test_pictures_of_a_run_that_has_not_finished_come_with_a_notice(cli, record,
     assert (result.code, result.out) == (0, "out.png\n")
     assert result.err.startswith("out.h5: read from its journal up to round 42; to go on: ")
     assert cli("render", "out.h5", "--frames", "film", "--size", "64x48").err == result.err
+
+
+@pytest.mark.parametrize(
+    ("picture", "message"),
+    [
+        ("folder.png", "folder.png: this is a folder; give the name of a file"),
+        ("pipe.png", "pipe.png exists and atomsim did not draw it; add --force to replace it"),
+    ],
+)
+def test_what_is_no_file_is_no_picture(cli, record, picture: str, message: str) -> None:
+    """A pipe is not even opened: it would wait for a writer for ever."""
+    record("out.h5")
+    Path("folder.png").mkdir()
+    os.mkfifo("pipe.png")
+    result = cli("render", "out.h5", "-o", picture)
+    assert (result.code, result.out, result.err) == (2, "", message + "\n")
+
+
+def test_a_name_that_looks_like_an_option_can_be_typed_as_told(cli) -> None:
+    Path("bricks.yaml").write_text(SCENE)
+    told = cli("run", "bricks.yaml", "-o", "./-x.h5").out.splitlines()[-1]
+    assert told == "next: atomsim render ./-x.h5"
+    assert cli(*told.split()[2:]).out == "-x.png\n"
