@@ -15,7 +15,7 @@ Indices: TypeAlias = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """The declaration something was compiled from: `bonds.left` at line 12 of rods.yaml."""
+    """The declaration something was compiled from: `bonds.left` at line 12 of rods.yaml; line 0 is all of a setting."""
 
     section: str
     name: str
@@ -23,7 +23,8 @@ class Origin:
     line: int
 
     def __str__(self) -> str:
-        return f"{self.section}.{self.name} ({self.file}:{self.line})"
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        return f"{self.section}.{self.name} ({place})"
 
 
 @dataclass(frozen=True, slots=True)

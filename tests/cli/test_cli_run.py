@@ -115,6 +115,13 @@ def test_a_blow_up_is_explained_and_keeps_the_frames_before(cli):
     assert cli("render", "out.h5", "--size", "64x48").code == 0
 
 
+def test_a_setting_that_is_to_blame_has_no_line(cli):
+    storm = "forces.storm={kind: gravity, impulse: [0, 0, 1e9]}"
+    result = cli("run", "scenes/rods.yaml", "--set", storm)
+    assert (result.code, result.out) == (3, "")
+    assert f"  pushed hardest by forces.storm (--set {storm}), with an impulse of 1e+09" in result.err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
