@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import random
 import tracemalloc
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -292,6 +294,28 @@ def test_numbers_too_large_to_compute_with(group: dict[str, Any]) -> None:
 )
 def test_other_numbers_too_large_to_compute_with(sections: dict[str, Any], message: str) -> None:
     assert mistakes({"a": atoms_at((0, 0, 0), (3, 0, 0))}, **sections) == [message]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("where", "write"),
+    [
+        ("groups.pair", lambda number: {"groups": {"pair": atoms_at((0, 0, 0), (0, number, 0))}}),
+        ("groups.pair", lambda number: {"groups": {"pair": atoms_at((0, 0, 0), velocity=[0, 0, number])}}),
+        ("time_step", lambda number: {"time_step": abs(number)}),
+        ("bonds.b.rest", lambda number: {"bonds": {"b": {"within": "pair", "rule": "all-pairs", "rest": abs(number)}}}),
+        ("forces.t.target", lambda number: {"forces": {"t": {"kind": "tether", "target": [number, 0, 0]}}}),
+        (
+            "forces.t.rest",
+            lambda number: {"forces": {"t": {"kind": "tether", "target": [0, 9, 0], "rest": abs(number)}}},
+        ),
+    ],
+)
+def test_the_largest_number_to_compute_with(where: str, write: Callable[[float], dict[str, Any]], sign: float) -> None:
+    compiled(**{"groups": PAIR, **write(sign * 1e150)})
+    [message] = mistakes(**{"groups": PAIR, **write(sign * math.nextafter(1e150, math.inf))})
+    assert message.startswith(f"{where}: ")
+    assert message.endswith("too large to compute with")
 
 
 def test_a_jitter_too_large_to_compute_with() -> None:

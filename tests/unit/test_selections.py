@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from atomsim.compiler import selections
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
 
 SELECTIONS = Selections(
@@ -86,3 +87,22 @@ def test_only_a_name_alone_is_a_whole_group() -> None:
     assert SELECTIONS.whole_group("ring") == GroupLayout(0, 10, (10,), True)
     assert SELECTIONS.whole_group("ring[:]") is None
     assert SELECTIONS.whole_group("all") is None
+
+
+def test_selections_are_counted_together_and_each_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 12 atoms each, 96 bytes: two fit into memory, however often they are used, the third does not."""
+    monkeypatch.setattr(selections, "LARGE", 100)
+    monkeypatch.setattr(selections, "free_memory", lambda: 200)
+    chosen = Selections({"a": GroupLayout(0, 13, (13,), False)}, 13)
+    for _ in range(3):
+        assert chosen.atoms(("a[1:]",)).size == chosen.atoms(("a[:-1]",)).size == 12
+    with pytest.raises(SelectionError) as error:
+        chosen.atoms(("a[2:]", "a[1]"))
+    assert str(error.value) == "the selections up to here name more atoms than fit into memory"
+    assert error.value.expression == "a[2:]"
+
+
+def test_small_selections_ask_for_no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(selections, "LARGE", 96)
+    monkeypatch.setattr(selections, "free_memory", lambda: 0)
+    assert Selections({"a": GroupLayout(0, 12, (12,), False)}, 12).atoms(("a",)).size == 12
