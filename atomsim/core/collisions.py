@@ -1,8 +1,7 @@
-"""Which declared collision pairs are near, remembered over rounds; knows no forces from outside and no scenes.
+"""Which pairs the declared collisions are, and which of them are near; knows no forces from outside and no scenes.
 
 A collision force fc = (c_k − c_i) · min(0, 1 − 4/d²) (paper section 2.3) is exactly zero for d ≥ 2, so pairs that far
-apart may be skipped without changing a bit. A list of the pairs nearer than 2 + skin stays valid until some atom has
-moved skin/2 since it was made; when it is made anew, and how far it looks, never shows in the result.
+apart may be skipped without changing a bit.
 """
 
 from __future__ import annotations
@@ -12,89 +11,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
-from atomsim.core.near import near_pairs, squared_distance
+from atomsim.core.near import near_pairs
 
 CONTACT_SQUARED = 4.0
 """Two unit balls touch when their centres are less than 2 apart: (1 + 1)²."""
-
-SKIN = 0.5
-"""How much further than contact the first list looks [length]: a longer list against a list made more often."""
-
-NARROWEST_SKIN, WIDEST_SKIN = 0.1, 8.0
-"""Between these the next list may look further, or less far."""
-
-FEW_PAIRS = 1 << 17
-"""So few pairs may all be listed: a list may look as far as it likes, where an atom falls out of the scene, say."""
-
-MAKING_COST = 400
-"""Finding the partners of one atom takes about as long as one round of so many partners."""
-
-
-class NearList:
-    """The pairs of all collision tables that may be in contact, kept up to date.
-
-    Args:
-        tables: the declared collisions.
-        n_atoms: number of atoms of the model.
-        skin: how much further than contact the first list looks [length]; later ones adapt.
-    """
-
-    def __init__(self, tables: tuple[CollisionTable, ...], n_atoms: int, skin: float = SKIN) -> None:
-        self._tables = tables
-        self._n_updates = 0
-        self._skin = skin
-        self._widest_skin = widest_skin(tables)
-        self._atoms = as_index(involved_atoms(tables, n_atoms))
-        self._made_at: Floats | None = None
-        none = np.empty(0, dtype=np.int64)
-        self.first, self.second = none, none
-        """The near pairs of all tables, table after table and each sorted, valid for the last position asked about."""
-        self.bounds = np.zeros(len(tables) + 1, dtype=np.int64)
-        """The near pairs of a table are those from bounds[table] to bounds[table + 1]."""
-
-    def update(self, position: Floats) -> bool:
-        """Make the lists valid for a position, (3, n_atoms); return whether they had to be made anew."""
-        if not self._tables:
-            return False
-        involved = position[:, self._atoms]
-        self._n_updates += 1
-        if self._made_at is not None:
-            if squared_distance(self._made_at, involved).max() < squared_reach(self._skin):
-                return False
-            making = MAKING_COST * involved.shape[1]
-            self._skin = better_skin(self._skin, self._widest_skin, self._n_updates, making, 2 * self.first.size)
-        self._made_at = involved.copy()
-        self._n_updates = 0
-        pairs = [table_pairs_near(table, position, 2.0 + self._skin) for table in self._tables]
-        self.first, self.second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
-        np.cumsum([first.size for first, _ in pairs], out=self.bounds[1:])
-        return True
-
-
-def squared_reach(skin: float) -> float:
-    """Return the squared way that an atom may move before a list ends to be valid; a little less, against rounding."""
-    return 0.25 * 0.999999 * skin * skin
-
-
-def widest_skin(tables: Iterable[CollisionTable]) -> float:
-    """Return how much further than contact lists may look without danger of becoming huge [length]."""
-    return 1e6 if sum(map(n_collision_pairs, tables)) <= FEW_PAIRS else WIDEST_SKIN
-
-
-def better_skin(skin: float, widest: float, n_rounds: int, making: float, n_near: int) -> float:
-    """Return how far the next list should look, so that making lists costs one to four times as much as using them.
-
-    Args:
-        skin: how much further than contact the last list looked [length].
-        widest: how much further it may look [length].
-        n_rounds: rounds that it was valid for.
-        making: what making it cost, in partners used in one round.
-        n_near: partners it listed, over all these atoms.
-    """
-    using = n_near * n_rounds
-    if making > 4 * using:
-        return min(1.4 * skin, widest)
-    return max(skin / 1.4, NARROWEST_SKIN) if making < using else skin
 
 
 def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> tuple[Indices, Indices]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.bonds import joined
-from atomsim.core.collisions import CONTACT_SQUARED, NearList
+from atomsim.core.collisions import CONTACT_SQUARED
 from atomsim.core.model import BondTable, Floats, Model, Observables, State
 from atomsim.core.near import STRETCH, pair_squares
+from atomsim.core.near_list import NearList
 
 
 class Observer:

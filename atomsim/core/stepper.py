@@ -11,9 +11,10 @@ import numpy as np
 
 from atomsim.core.bond_forms import Scatter
 from atomsim.core.bonds import bond_forms, joined
-from atomsim.core.collisions import CONTACT_SQUARED, NearList
+from atomsim.core.collisions import CONTACT_SQUARED
 from atomsim.core.forces import held_atoms, prepare_forces
 from atomsim.core.model import Floats, Model, State
+from atomsim.core.near_list import NearList
 
 
 class NumpyStepper:

@@ -11,7 +11,7 @@ from support.oracle import build
 from support.running import after, digest_of, is_finite, without_mistakes
 from support.strategies import scenes
 
-from atomsim.core import bonds, collisions
+from atomsim.core import bonds, near_list
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
 from atomsim.core.stepper import NumpyStepper
@@ -64,7 +64,7 @@ def test_every_form_of_bonds_gives_the_same_bits(data: dict[str, Any]) -> None:
 def test_the_skin_never_shows(data: dict[str, Any], skin: float) -> None:
     model, state, digest = finite_run(data)
     stepper = NumpyStepper(model, state)
-    stepper._near = collisions.NearList(model.collisions, model.n_atoms, skin)
+    stepper._near = near_list.NearList(model.collisions, model.n_atoms, skin)
     stepper.advance(ROUNDS)
     assert digest_of(stepper.state()) == digest
 

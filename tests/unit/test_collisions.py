@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from atomsim.core.collisions import WIDEST_SKIN, NearList, as_index, table_pairs_near, widest_skin
+from atomsim.core.collisions import as_index, table_pairs_near
 from atomsim.core.model import Between, CollisionTable, Origin, Within
 
 ORIGIN = Origin("collisions", "c", "<scene>", 1)
@@ -37,46 +37,6 @@ def test_a_pair_of_several_blocks_counts_once() -> None:
     assert pairs(table_of(everything, everything, Between(np.arange(8), np.arange(8))), 0.6) == [
         (i, i + 1) for i in range(7)
     ]
-
-
-def test_a_list_is_kept_until_an_atom_has_moved_half_the_skin() -> None:
-    near = NearList((table_of(Within(np.arange(8), 1)),), 8, skin=0.5)
-    assert near.update(LINE)
-    assert not near.update(LINE)
-    moved = LINE.copy()
-    moved[1, 3] = 0.249
-    assert not near.update(moved)
-    moved[1, 3] = 0.25
-    assert near.update(moved)
-    assert not near.update(moved)
-
-
-def test_atoms_that_never_collide_may_move_freely() -> None:
-    near = NearList((table_of(Within(np.array([0, 1, 5]), 1)),), 8)
-    assert near.update(LINE)
-    moved = LINE.copy()
-    moved[2, 2:5] = 100
-    assert not near.update(moved)
-
-
-def test_an_atom_that_falls_out_of_the_scene_makes_ever_fewer_lists() -> None:
-    tables = (table_of(Within(np.array([0, 7]), 1)),)
-    near, position, made = NearList(tables, 8), LINE.copy(), 0
-    for _ in range(1000):
-        position[2, 7] += 1.0
-        made += near.update(position)
-    assert made < 30
-
-
-def test_lists_of_many_atoms_never_look_far() -> None:
-    assert widest_skin([table_of(Within(np.arange(10**6), 1))]) == WIDEST_SKIN
-    assert widest_skin([table_of(Between(np.arange(625), np.array([700])))]) > 1000
-
-
-def test_no_collisions_need_no_list() -> None:
-    near = NearList((), 8)
-    assert not near.update(LINE)
-    assert near.first.size == 0
 
 
 def test_consecutive_atoms_are_read_as_a_slice() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from atomsim.core import collisions
+from atomsim.core import near_list
 from atomsim.core.collisions import CONTACT_SQUARED
 from atomsim.core.model import Floats
 from atomsim.core.numba_backend.bond_kernels import add_rows, add_tiles
@@ -14,7 +14,7 @@ from atomsim.core.numba_backend.records import Bonds, Forces, Grids, Motion, Nea
 MAKING_COST = 100
 """Finding the partners of one atom takes a kernel about as long as one round of so many partners."""
 
-better_skin, squared_reach = inner(collisions.better_skin), inner(collisions.squared_reach)
+better_skin, squared_reach = inner(near_list.better_skin), inner(near_list.squared_reach)
 
 
 @kernel

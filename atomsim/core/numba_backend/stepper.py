@@ -9,10 +9,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from atomsim.core.collisions import SKIN, better_skin, involved_atoms, widest_skin
+from atomsim.core.collisions import involved_atoms
 from atomsim.core.forces import held_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Model, State
+from atomsim.core.near_list import SKIN, better_skin, widest_skin
 from atomsim.core.numba_backend.bond_plan import plan_bonds
 from atomsim.core.numba_backend.force_plan import Pushes, in_order, plan_forces, runs_of
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
