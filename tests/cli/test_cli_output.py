@@ -58,6 +58,30 @@ def test_closed_streams(folder, closed):
         assert b"Traceback" not in (done.stderr or b"")
 
 
+NOISE = """
+import contextlib, os
+from atomsim.cli import main
+from atomsim.core.stepper import NumpyStepper
+advance = NumpyStepper.advance
+def noisy(stepper, n_rounds):
+    advance(stepper, n_rounds)
+    for number in (1, 2):
+        with contextlib.suppress(OSError):
+            os.write(number, b"noise")
+NumpyStepper.advance = noisy
+main()
+"""
+
+
+def test_what_libraries_print_goes_into_no_file(folder):
+    """They write to streams by number, whatever has been opened under it."""
+    whole = (folder / "out.h5").read_bytes()
+    command = [sys.executable, "-c", NOISE, *RUN, "-o", "noise.h5"]
+    done = subprocess.run(command, cwd=folder, preexec_fn=closing(1, 2), check=False, timeout=60)
+    assert done.returncode == 0
+    assert (folder / "noise.h5").read_bytes() == whole
+
+
 @pytest.mark.parametrize(
     "command", [("show", "out.h5"), ("check", SCENE), ("schema",), ("compare", "out.h5", "out.h5")]
 )
