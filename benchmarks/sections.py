@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from benchmarks import cold_start, fluid_scaling, large_body, recording, rounds
+from benchmarks import cold_start, fluid_scaling, large_body, pour, recording, rounds
 from benchmarks.tables import Answer, Table
 from benchmarks.timing import Results
 
@@ -28,6 +28,7 @@ SECTIONS = {
     "rods": Section(partial(rounds.measure, "rods"), rounds.tables, rounds.answers),
     "balls": Section(partial(rounds.measure, "balls"), rounds.tables, rounds.answers),
     "fluid": Section(fluid_scaling.measure, fluid_scaling.tables, fluid_scaling.answers),
+    "pour": Section(pour.measure, pour.tables, lambda _: []),
     "cold": Section(cold_start.measure, cold_start.tables, cold_start.answers),
     "recording": Section(recording.measure, recording.tables, recording.answers),
     "memory": Section(large_body.measure, large_body.tables, large_body.answers),

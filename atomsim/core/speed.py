@@ -24,7 +24,8 @@ class SpeedWatch:
 
     def see(self, frame: Frame) -> None:
         """Look at a recorded round."""
-        if self._is_idle:
+        at_most = self._model.time_step * math.sqrt(2.0 * frame.observables.kinetic_energy)  # if one had all of it
+        if self._is_idle or at_most < 0.999 * self._furthest:
             return
         velocity = frame.velocity[self._atoms]
         step = self._model.time_step * math.sqrt(float((velocity * velocity).sum(axis=1).max()))

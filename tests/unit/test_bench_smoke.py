@@ -13,7 +13,7 @@ from support.running import compiled, digest_of
 import atomsim
 from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Model, State
-from benchmarks import fluid, page, rounds
+from benchmarks import fluid, page, pour, rounds
 from benchmarks.bench import main
 from benchmarks.engines import NUMPY, PLAIN, Engine
 from benchmarks.pairs import pair_table
@@ -90,6 +90,15 @@ def test_command_prints_tables_and_keeps_numbers_for_the_page(
     assert page.filled(filled, results) == filled
     with pytest.raises(ValueError, match="the page has no place for memory"):
         page.filled(places.replace("/memory", "/memories"), results)
+
+
+def test_pouring_is_a_whole_run_for_every_backend() -> None:
+    results = pour.measure(quick=True)
+    assert results["title"] == "A fluid of 1,000 atoms falls onto a plane of 784"
+    for row in results["runs"].values():
+        assert 20 < row["megabytes"] < 2000
+        assert 1784 * 48 * 21 < row["file"] * 1e6 < 1.1 * 1784 * 48 * 21
+    assert len(pour.tables(results)[0].rows) == len(results["runs"])
 
 
 def test_unknown_sections_are_named(capsys: pytest.CaptureFixture[str]) -> None:
