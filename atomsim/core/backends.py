@@ -25,8 +25,11 @@ MAX_THREADS = 256
 ATOMS_PER_THREAD = 5000
 """Threads that share fewer atoms than that lose more time meeting after every round than they save."""
 
-ROUND_SECONDS, BOND_SECONDS, COLLIDING_ATOM_SECONDS = 4e-5, 1e-8, 1e-7
+ROUND_SECONDS, BOND_SECONDS, COLLIDING_ATOM_SECONDS = 3e-5, 7e-9, 1e-7
 """What a round costs the NumPy stepper, about: at all, per bond, per atom that may collide."""
+
+CROWD, CROWDED_ATOM_SECONDS = 20_000, 3e-7
+"""From so many atoms on that may collide, the cache does not hold them, and each takes longer."""
 
 SAVED = 0.8
 """The part of this that Numba saves."""
@@ -134,7 +137,8 @@ def _numpy_seconds(model: Model) -> float:
     """Estimate what a round takes the NumPy stepper."""
     n_bonds = sum(table.first.size for table in model.bonds)
     n_colliding = involved_atoms(model.collisions, model.n_atoms).size
-    return ROUND_SECONDS + BOND_SECONDS * n_bonds + COLLIDING_ATOM_SECONDS * n_colliding
+    per_atom = COLLIDING_ATOM_SECONDS if n_colliding < CROWD else CROWDED_ATOM_SECONDS
+    return ROUND_SECONDS + BOND_SECONDS * n_bonds + per_atom * n_colliding
 
 
 def _n_cores() -> int:

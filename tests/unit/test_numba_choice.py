@@ -53,6 +53,17 @@ def test_kernels_are_compiled_only_for_a_very_long_run(monkeypatch: pytest.Monke
     assert str(backend) == "numpy, 1 thread (the run is too short to compile Numba kernels for)"
 
 
+def test_a_crowd_is_slower_than_its_atoms_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the cache does not hold them, half the rounds repay compiling that would otherwise."""
+    monkeypatch.setattr(backends, "_is_installed", lambda: True)
+    monkeypatch.setattr(cache, "has_kernels", lambda: False)
+    monkeypatch.setattr(backends, "_numba", lambda *_: backends.Backend("numba", 1, "", NumpyStepper))
+    for n_atoms, rounds, name in ((19_000, 5000, "numpy"), (21_000, 5000, "numba"), (21_000, 1000, "numpy")):
+        fluid = {"shape": "string", "count": n_atoms, "step": [3, 0, 0]}
+        model, _ = compiled({"fluid": fluid}, collisions={"c": {"within": "fluid"}})
+        assert choose("auto", None, model, rounds).name == name
+
+
 def test_numba_as_asked_for() -> None:
     pytest.importorskip("numba", reason="the backend is an extra")
     assert str(choose("numba", 3, MODEL, 1)) == "numba, 3 threads (as asked for)"
