@@ -19,6 +19,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from atomsim.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from atomsim.core.model import Frame, Model, State
     from atomsim.core.simulate import simulate

@@ -9,6 +9,7 @@ from atomsim.cli.golden import golden
 from atomsim.cli.inspect import check, schema, show
 from atomsim.cli.render import render
 from atomsim.cli.run import recover, run
+from atomsim.version import __version__
 
 app = typer.Typer(
     name="atomsim",
@@ -28,7 +29,5 @@ app.add_typer(golden, name="golden")
 @app.callback(invoke_without_command=True)
 def _top(version: bool = typer.Option(False, "--version", help="Print the version and exit.")) -> None:
     if version:
-        from importlib.metadata import version as version_of
-
-        print(f"atomsim {version_of('atomsim')}")
+        print(f"atomsim {__version__}")
         raise typer.Exit

@@ -5,13 +5,13 @@ from __future__ import annotations
 import platform
 import sys
 from dataclasses import dataclass
-from importlib.metadata import version
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from atomsim.core.model import GroupSpan, Model, Origin
+from atomsim.version import __version__
 
 AtomNumbers: TypeAlias = NDArray[np.int32]
 """Numbers of atoms as H5MD and VMD want them: 32 bits."""
@@ -51,7 +51,7 @@ class Versions:
     def here(cls) -> Versions:
         """Return the versions in use now."""
         return cls(
-            program=version("atomsim"),
+            program=__version__,
             numpy=np.__version__,
             python=".".join(str(part) for part in sys.version_info[:3]),
             platform=f"{platform.system()} {platform.machine()}",
