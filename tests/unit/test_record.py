@@ -1,12 +1,15 @@
-"""From a scene to a recorded trajectory: how a run that is stopped at an awkward moment ends."""
+"""From a scene to a recorded trajectory: what is refused at once, how a run stopped at an awkward moment ends."""
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from support.running import SCENES
 
+from atomsim.errors import InputError, RunError, SceneError
 from atomsim.record import StopWishedError, resume, run
 from atomsim.scene import load
 from atomsim.trajectory import End, Recorder
@@ -42,3 +45,30 @@ def test_a_wish_to_stop_before_keeps_what_there_is(tmp_path: Path) -> None:
     outcome = run(load(SCENES / "threads.yaml"), path, rounds=30, report=stop_at_once)
     assert (outcome.end.kind, outcome.last_round) == ("interrupted", 0)
     assert resume(path).end.kind == "finished"
+
+
+def test_a_run_needs_rounds(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as caught:
+        run(load(SCENES / "threads.yaml"), tmp_path / "out.h5", rounds=0)
+    assert str(caught.value) == "the number of rounds must be 1 or more (got 0)"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_taken_name_is_told_before_the_scene_is_compiled(tmp_path: Path) -> None:
+    nonsense = load(SCENES / "threads.yaml", ["bonds.left.within=left[999]"])
+    path = tmp_path / "out.h5"
+    run(load(SCENES / "threads.yaml"), path, rounds=10)
+    with pytest.raises(InputError, match="exists; add --force to replace it"):
+        run(nonsense, path)
+    with pytest.raises(SceneError, match="is out of range"):
+        run(nonsense, path, replace=True)
+
+
+def test_a_run_that_goes_on_has_to_fit_on_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "out.h5"
+    run(load(SCENES / "threads.yaml"), path, rounds=10)
+    before = path.read_bytes()
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=10**6))
+    with pytest.raises(RunError, match=r"of disk while it is written, and 1\.0 MB are free"):
+        resume(path, rounds=100_000)
+    assert [left.read_bytes() for left in tmp_path.iterdir()] == [before]
