@@ -126,6 +126,7 @@ def start(*arguments: str) -> int:
     if child:
         return child
     code = 1
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background, it would be ignored
     try:
         sys.stdout = sys.stderr = Path(os.devnull).open("w")  # noqa: SIM115 - ends with the child
         sys.argv = ["atomsim", *arguments]
