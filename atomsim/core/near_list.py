@@ -1,8 +1,8 @@
 """Near collision pairs remembered over rounds; knows no forces and no scenes.
 
 A list of the pairs nearer than 2 + skin stays valid until two of its atoms may have come nearer to each other by skin:
-until some atom has moved skin/2 since it was made, seen from whatever moves along with most. When lists are made anew,
-and how far they look, never shows in the result.
+until some atom has moved skin/2 since it was made, apart from what it has in common with all others. When lists are
+made anew, and how far they look, never shows in the result.
 """
 
 from __future__ import annotations
@@ -23,6 +23,9 @@ NARROWEST_SKIN, WIDEST_SKIN = 0.1, 8.0
 
 FEW_PAIRS = 1 << 17
 """So few pairs may all be listed: a list may look as far as it likes, where an atom falls out of the scene, say."""
+
+MANY_ATOMS = 2000
+"""From so many atoms on, making lists takes so much longer than looking at each that what drifts is looked at twice."""
 
 LONGEST_DRIFT = 1e6
 """Atoms may drift so many skins together before rounding could hide that one of them approaches another."""
@@ -49,8 +52,11 @@ class NearList:
         self._n_updates = 0
         self._skin = skin
         self._widest_skin = widest_skin(tables)
-        self._atoms = as_index(involved_atoms(tables, n_atoms))
-        self._atoms_of = [as_index(involved_atoms([table], n_atoms)) for table in tables]
+        involved = involved_atoms(tables, n_atoms)
+        self._atoms = as_index(involved)
+        self._drifting = (
+            [as_index(involved_atoms([table], n_atoms)) for table in tables] if involved.size >= MANY_ATOMS else []
+        )
         self._made_at: Floats | None = None
         self.first, self.second = np.empty((2, 0), dtype=np.int64)
         """The near pairs of all tables, table after table and each sorted, valid for the last position asked about."""
@@ -66,7 +72,7 @@ class NearList:
         if self._made_at is not None:
             if squared_distance(self._made_at[:, self._atoms], involved).max() < squared_reach(self._skin):
                 return False
-            if all(stay_apart(position[:, atoms] - self._made_at[:, atoms], self._skin) for atoms in self._atoms_of):
+            if self._only_drifted(self._made_at, position):
                 return False
             self._skin = self._better_skin(involved.shape[1])
         self._made_at = position.copy()
@@ -75,6 +81,12 @@ class NearList:
         self.first, self.second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
         np.cumsum([first.size for first, _ in pairs], out=self.bounds[1:])
         return True
+
+    def _only_drifted(self, made_at: Floats, position: Floats) -> bool:
+        """Return whether what moved, moved along with all other atoms of its table."""
+        return bool(self._drifting) and all(
+            stay_apart(position[:, atoms] - made_at[:, atoms], self._skin) for atoms in self._drifting
+        )
 
     def _better_skin(self, n_atoms: int) -> float:
         """Return how far the next list should look, after what the last one cost."""

@@ -60,11 +60,12 @@ def test_every_form_of_bonds_gives_the_same_bits(data: dict[str, Any]) -> None:
             assert digest_of(after(model, state, ROUNDS)) == digest
 
 
-@given(scenes(), st.sampled_from([0.0, 0.01, 0.3, 2.0]))
-def test_the_skin_never_shows(data: dict[str, Any], skin: float) -> None:
+@given(scenes(), st.sampled_from([0.0, 0.01, 0.3, 2.0]), st.booleans())
+def test_the_skin_never_shows(data: dict[str, Any], skin: float, counts_as_many: bool) -> None:
     model, state, digest = finite_run(data)
     stepper = NumpyStepper(model, state)
-    stepper._near = near_list.NearList(model.collisions, model.n_atoms, skin)
+    with patch.object(near_list, "MANY_ATOMS", 0 if counts_as_many else 10**9):
+        stepper._near = near_list.NearList(model.collisions, model.n_atoms, skin)
     stepper.advance(ROUNDS)
     assert digest_of(stepper.state()) == digest
 

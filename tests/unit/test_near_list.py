@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from atomsim.core import near_list
 from atomsim.core.model import Between, CollisionTable, Origin, Within
 from atomsim.core.near_list import WIDEST_SKIN, NearList, stay_apart, widest_skin
 
@@ -14,14 +16,14 @@ def table_of(*blocks: Within | Between) -> CollisionTable:
     return CollisionTable(Origin("collisions", "c", "<scene>", 1), blocks)
 
 
-def test_a_list_is_kept_until_two_atoms_may_be_nearer_by_the_skin() -> None:
+def test_a_list_is_kept_until_an_atom_has_moved_half_the_skin() -> None:
     near = NearList((table_of(Within(np.arange(8), 1)),), 8, skin=0.5)
     assert near.update(LINE)
     assert not near.update(LINE)
     moved = LINE.copy()
-    moved[1, 3] = 0.499
+    moved[1, 3] = 0.249
     assert not near.update(moved)
-    moved[1, 4] = -0.001
+    moved[1, 3] = 0.25
     assert near.update(moved)
     assert not near.update(moved)
 
@@ -54,18 +56,22 @@ def test_no_collisions_need_no_list() -> None:
     assert near.first.size == 0
 
 
-def test_atoms_that_fall_together_need_no_new_list() -> None:
+def test_atoms_that_fall_together_need_no_new_list(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(near_list, "MANY_ATOMS", 8)
     near, position = NearList((table_of(Within(np.arange(8), 1)),), 8, skin=0.5), LINE.copy()
     assert near.update(position)
     for _ in range(100):
         position[2] -= 3.0
         assert not near.update(position)
-    position[2, 5] += 0.51
+    position[2, 5] += 0.499
+    assert not near.update(position)
+    position[2, 4] -= 0.001
     assert near.update(position)
 
 
-def test_each_table_has_its_own_drift() -> None:
+def test_each_table_has_its_own_drift(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two blocks fly apart: what touches inside of each stays the same."""
+    monkeypatch.setattr(near_list, "MANY_ATOMS", 8)
     tables = (table_of(Within(np.arange(4), 1)), table_of(Within(np.arange(4, 8), 1)))
     near, position = NearList(tables, 8, skin=0.5), LINE.copy()
     near.update(position)
