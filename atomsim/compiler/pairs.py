@@ -8,7 +8,7 @@ import numpy as np
 
 from atomsim.compiler.selections import Selections
 from atomsim.core.model import Floats, Indices
-from atomsim.core.near import near_pairs
+from atomsim.core.near import distinct, near_pairs
 from atomsim.scene.language import AllPairsBonds, Bonds, DistanceThresholdBonds, ListedBonds, NeighbourBonds
 
 Pairs = tuple[Indices, Indices]
@@ -38,8 +38,7 @@ def expand(bonds: Bonds, selections: Selections, position: Floats) -> Pairs:
     found = [pairs for pairs in _expand_each(bonds, selections, position) if pairs[0].size]
     if len(found) == 1 and bonds.rule == "all-pairs" and bonds.between is None:
         return found[0]  # canonical as it is, and perhaps large
-    keys = [np.minimum(one, other) * n_atoms + np.maximum(one, other) for one, other in found]
-    key = np.unique(np.concatenate(keys)) if keys else np.empty(0, dtype=np.int64)
+    key = distinct([np.minimum(one, other) * n_atoms + np.maximum(one, other) for one, other in found])
     first, second = key // n_atoms, key % n_atoms
     if not key.size:
         raise RuleError(*_why_no_pairs(bonds))

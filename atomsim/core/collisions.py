@@ -11,7 +11,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
-from atomsim.core.near import near_pairs
+from atomsim.core.near import distinct, near_pairs
 
 CONTACT_SQUARED = 4.0
 """Two unit balls touch when their centres are less than 2 apart: (1 + 1)²."""
@@ -35,7 +35,7 @@ def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> 
     if len(table.blocks) == 1 and isinstance(table.blocks[0], Within):
         return found[0]  # sorted as it is
     n_atoms = position.shape[1]
-    key = np.unique(np.concatenate([first * n_atoms + second for first, second in found]))
+    key = distinct([first * n_atoms + second for first, second in found])
     first = key // n_atoms
     return first, key - first * n_atoms
 
@@ -81,5 +81,5 @@ def _n_block_pairs(block: Within | Between) -> int:
     if isinstance(block, Within):
         n_reached = max(0, block.atoms.size - block.min_gap)
         return n_reached * (n_reached + 1) // 2
-    n_both = int(np.intersect1d(block.left, block.right).size)
+    n_both = int(np.isin(block.left, block.right, assume_unique=True).sum())
     return int(block.left.size) * int(block.right.size) - n_both * (n_both + 1) // 2

@@ -20,6 +20,7 @@ from atomsim.core.model import (
     TetherForce,
     TorqueForce,
 )
+from atomsim.core.near import distinct
 
 Apply = Callable[[int, Floats, Floats, Floats], None]
 """Adds one force: (round_index, position, velocity, impulse), arrays (3, n_atoms), the last one changed in place."""
@@ -47,8 +48,7 @@ def is_pushing(force: PushForce, round_index: int) -> bool:
 
 def held_atoms(forces: Sequence[ExternalForce]) -> Indices:
     """Return the atoms whose impulse is discarded, ascending."""
-    held = [force.atoms for force in forces if isinstance(force, HoldForce)]
-    return np.unique(np.concatenate(held)) if held else np.empty(0, dtype=np.int64)
+    return distinct([force.atoms for force in forces if isinstance(force, HoldForce)])
 
 
 def prepare_forces(forces: Sequence[ExternalForce]) -> list[Apply]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Between, CollisionTable, Indices, Model, State, TorqueForce, Within, atom_name
-from atomsim.core.near import squared_distance
+from atomsim.core.near import distinct, squared_distance
 from atomsim.core.observables import contact_potential
 from atomsim.core.stiffness import is_damped_too_much, is_surely_stable, largest_time_step
 
@@ -116,7 +116,7 @@ def _idle_torques(model: Model, state: State) -> list[str]:
 def _atoms_of(table: CollisionTable) -> Indices:
     """Return all atoms that a table lets collide."""
     sides = ((block.left, block.right) if isinstance(block, Between) else (block.atoms,) for block in table.blocks)
-    return np.unique(np.concatenate([atoms for side in sides for atoms in side]))
+    return distinct([atoms for side in sides for atoms in side])
 
 
 def _advice(limit: float) -> str:

@@ -6,7 +6,7 @@ says, is below the squared cutoff. How they look for them (tiles or cells) never
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -72,6 +72,15 @@ def near_pairs(left: Floats, right: Floats | None, cutoff: float) -> tuple[Indic
     key.sort()
     first = key // n_right
     return first, key - first * n_right
+
+
+def distinct(numbers: Sequence[Indices]) -> Indices:
+    """Return whole numbers in ascending order, each once; unlike `np.unique` it loads nothing first."""
+    joined = np.concatenate([np.empty(0, dtype=np.int64), *numbers])
+    joined.sort()
+    is_new = np.ones(joined.size, dtype=bool)
+    np.not_equal(joined[1:], joined[:-1], out=is_new[1:])
+    return joined[is_new]
 
 
 def squared_distance(left: Floats, right: Floats) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from atomsim.core import near
-from atomsim.core.near import near_pairs, squared_distance
+from atomsim.core.near import distinct, near_pairs, squared_distance
 
 
 def test_cells_find_what_tiles_find_among_thousands() -> None:
@@ -48,3 +48,10 @@ def test_squared_distance_adds_x_and_y_before_z() -> None:
     left, right = np.zeros((3, 1)), np.array([[1e8], [1.0], [1.0]])
     assert squared_distance(left, right).tolist() == [(1e8 * 1e8 + 1.0) + 1.0]
     assert (1e8 * 1e8 + 1.0) + 1.0 != 1e8 * 1e8 + 2.0
+
+
+def test_distinct_numbers_ascend() -> None:
+    numbers = np.random.default_rng(1).integers(-5, 20, 30)
+    assert distinct([numbers[:9], numbers[9:]]).tolist() == sorted(set(numbers.tolist()))
+    assert distinct([]).tolist() == []
+    assert distinct([np.array([7])]).tolist() == [7]
