@@ -10,7 +10,7 @@ from pathlib import Path
 INTERRUPTED = 130
 
 OBJECTS_PER_COLLECTION = 100_000
-"""Loading modules makes many objects and no garbage; looking for it all the time takes a tenth of a command's start."""
+"""Loading modules makes many objects and no garbage; looking for it takes some hundredths of a command's start."""
 
 
 def main() -> None:

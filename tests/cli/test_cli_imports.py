@@ -48,6 +48,25 @@ def test_a_command_loads_what_it_needs(tmp_path, arguments, libraries):
     assert loaded(tmp_path, *arguments) <= libraries
 
 
+def test_plugins_of_others_do_not_read_scenes(tmp_path, monkeypatch):
+    """A package that is installed by chance could change what pydantic reads."""
+    about = tmp_path / "site" / "meddler-1.dist-info"
+    about.mkdir(parents=True)
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: meddler\nVersion: 1\n")
+    (about / "entry_points.txt").write_text("[pydantic]\nmeddler = meddler:plugin\n")
+    (about.parent / "meddler.py").write_text("raise SystemExit('a plugin was loaded')\n")
+    monkeypatch.setenv("PYTHONPATH", str(about.parent))
+    done = subprocess.run(
+        [sys.executable, "-m", "atomsim", "check", RODS], cwd=tmp_path, check=False, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    monkeypatch.setenv("PYDANTIC_DISABLE_PLUGINS", "")  # whoever wants them, has them
+    done = subprocess.run(
+        [sys.executable, "-m", "atomsim", "check", RODS], cwd=tmp_path, check=False, capture_output=True, text=True
+    )
+    assert "a plugin was loaded" in done.stderr
+
+
 def test_only_pictures_load_matplotlib(tmp_path):
     assert "matplotlib" not in loaded(tmp_path, "run", RODS, "--rounds", "50")
     assert "matplotlib" not in loaded(tmp_path, "show", "out.h5")

@@ -126,6 +126,9 @@ def test_tables_that_meet_on_an_atom_stay_in_order() -> None:
         pairs_of(first),
         sorted(pairs_of(second) + pairs_of(third)),
     ]
+    beside_first, on_second = shifted(ROD, 100), shifted(ROD, 169)
+    assert len(joined([first, beside_first])) == 1
+    assert len(joined([first, beside_first, on_second])) == 2
     nothing = BondTable(ORIGIN, ROD.first[:0], ROD.second[:0], ROD.rest_squared[:0])
     assert joined([first, nothing])[0] is first
     assert joined([]) == []

@@ -41,6 +41,23 @@ def test_reports_do_not_cut_short_stretches_ever_shorter(monkeypatch: pytest.Mon
     assert heard == [0, 1, 3, 7, 10, 18, 20, 30, 40]
 
 
+def test_a_slow_stretch_makes_the_next_ones_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A round takes 0.03 s by this clock: four are too many for a tenth of a second."""
+    clock = [0.0]
+    monkeypatch.setattr("atomsim.core.simulate.time.perf_counter", lambda: clock[0])
+
+    class Slow(NumpyStepper):
+        def advance(self, n_rounds: int) -> None:
+            super().advance(n_rounds)
+            clock[0] += 0.03 * n_rounds
+
+    model, state = falling()
+    heard: list[int] = []
+    for _ in simulate(model, state, 15, 100, Slow, heard.append):
+        pass
+    assert heard == [0, 1, 3, 7, 9, 13, 15]
+
+
 def test_a_frame_is_what_was_computed() -> None:
     model, state = falling()
     *_, frame = simulate(model, state, 20)
