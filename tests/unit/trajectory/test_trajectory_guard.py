@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import zlib
@@ -16,7 +17,7 @@ from sample_run import digest_of, frame, header, holds, killed, record
 
 from atomsim.errors import InputError
 from atomsim.trajectory import End, Trajectory, guard
-from atomsim.trajectory.records import BONDS, FRAMES, HEAD, PREFIX, checksum_start
+from atomsim.trajectory.records import BONDS, FRAMES, GO_ON, HEAD, PREFIX, checksum_start
 from atomsim.trajectory.rows import row_dtype
 
 ROUNDS = [0, 10, 20, 30, 40]
@@ -332,3 +333,19 @@ def test_a_record_of_an_unknown_kind_ends_the_journal(tmp_path: Path) -> None:
         assert holds(trajectory, [0, 10, 20])
         assert trajectory.end == End("killed")
         assert trajectory.lost_bytes == PREFIX.size
+
+
+def test_a_block_without_frames_is_damage_in_a_journal(tmp_path: Path) -> None:
+    """Nobody writes one; what follows it is not believed."""
+    path = tmp_path / "out.h5"
+    journal = killed(path, header(40), stop_after=20)
+    more = json.dumps({"rounds": 35}).encode()
+    empty = PREFIX.pack(FRAMES, 0, checksum_start(FRAMES, 0))
+    goes_on = PREFIX.pack(GO_ON, len(more), zlib.crc32(more, checksum_start(GO_ON, len(more)))) + more
+    data = journal.read_bytes()
+    journal.write_bytes(data + empty + goes_on)
+    with Trajectory(path) as trajectory:
+        assert (trajectory.header.rounds, trajectory.rounds.tolist()) == (40, [0, 10, 20])
+    journal.write_bytes(data + goes_on)
+    with Trajectory(path) as trajectory:
+        assert trajectory.header.rounds == 35
