@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from atomsim.core.model import Frame, Model, State
     from atomsim.core.simulate import simulate
     from atomsim.errors import AtomsimError, BlowUpError, InputError, RunError, SceneError
-    from atomsim.pictures import render, render_frames
-    from atomsim.record import resume, run
     from atomsim.scene.loader import LoadedScene, load, loads
+    from atomsim.tasks.render import render, render_frames
+    from atomsim.tasks.run import resume, run
     from atomsim.trajectory import Trajectory
 
 _HOMES = {
@@ -43,10 +43,10 @@ _HOMES = {
     "Trajectory": "atomsim.trajectory",
     "load": "atomsim.scene.loader",
     "loads": "atomsim.scene.loader",
-    "render": "atomsim.pictures",
-    "render_frames": "atomsim.pictures",
-    "resume": "atomsim.record",
-    "run": "atomsim.record",
+    "render": "atomsim.tasks.render",
+    "render_frames": "atomsim.tasks.render",
+    "resume": "atomsim.tasks.run",
+    "run": "atomsim.tasks.run",
     "simulate": "atomsim.core.simulate",
 }
 

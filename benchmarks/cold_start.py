@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from atomsim.compiler import compile_scene
-from atomsim.core.backends import choose
+from atomsim.core.backend import choose
 from atomsim.core.model import Model
 from atomsim.scene import load
 from benchmarks.one_thread import environment_of_a_user

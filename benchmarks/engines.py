@@ -27,7 +27,7 @@ class Engine:
 
 
 NUMBA = Engine("atomsim, Numba", "numba", "atomsim.core.numba_backend.stepper", "NumbaStepper")
-NUMPY = Engine("atomsim, NumPy", "numpy", "atomsim.core.stepper", "NumpyStepper")
+NUMPY = Engine("atomsim, NumPy", "numpy", "atomsim.core.numpy_backend.stepper", "NumpyStepper")
 PLAIN = Engine("plain NumPy loop", "numpy", "benchmarks.plain", "PlainStepper")
 PEERS = (
     Engine("Warp, CPU", "warp", "benchmarks.peers.warp", "WarpStepper"),

@@ -9,9 +9,9 @@ from importlib.util import find_spec
 from typing import TypeVar
 
 from atomsim.compiler import compile_scene
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
 from atomsim.core.simulate import Stepper, frame_of
-from atomsim.core.stepper import NumpyStepper
 from atomsim.scene.language import Scene
 from benchmarks.tables import Answer, Table, below, significant
 from benchmarks.timing import Results

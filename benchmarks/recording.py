@@ -10,10 +10,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from atomsim.compiler import compile_scene
-from atomsim.core.backends import choose
+from atomsim.core.backend import choose
 from atomsim.core.simulate import simulate
-from atomsim.record import run
 from atomsim.scene import load
+from atomsim.tasks.run import run
 from benchmarks.rounds import SCENES
 from benchmarks.tables import Answer, Table, below, significant
 from benchmarks.timing import Results, in_turns, spread

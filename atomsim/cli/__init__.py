@@ -19,7 +19,7 @@ def main() -> None:
     # A scene means the same whatever else is installed, and looking for plugins takes time.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
-        from atomsim.cli.output import prepare, tell
+        from atomsim.cli.terminal.output import prepare, tell
         from atomsim.errors import AtomsimError
 
         prepare()

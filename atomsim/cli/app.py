@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import typer
 
-from atomsim.cli.compare import compare, verify
-from atomsim.cli.golden import golden
-from atomsim.cli.inspect import check, schema, show
-from atomsim.cli.render import render
-from atomsim.cli.run import recover, run
+from atomsim.cli.commands.compare import compare, verify
+from atomsim.cli.commands.golden import golden
+from atomsim.cli.commands.inspect import check, schema, show
+from atomsim.cli.commands.render import render
+from atomsim.cli.commands.run import recover, run
 from atomsim.version import __version__
 
 app = typer.Typer(

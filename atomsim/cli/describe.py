@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR
-from atomsim.core.bonds import bond_forms
-from atomsim.core.collisions import n_collision_pairs
+from atomsim.core.diagnosis.forecast import forecast
+from atomsim.core.diagnosis.stiffness import largest_time_step
 from atomsim.core.forces import held_atoms
-from atomsim.core.forecast import forecast
 from atomsim.core.memory import readable_bytes
 from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model, State
-from atomsim.core.stiffness import largest_time_step
-from atomsim.scene.wording import printable
+from atomsim.core.numpy_backend.bonds import bond_forms
+from atomsim.core.pairs.collisions import n_collision_pairs
+from atomsim.scene.mistakes.wording import printable
 from atomsim.trajectory import count_frames, trajectory_bytes
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ import numpy as np
 from atomsim.compiler.coincident import Pairs
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
-from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import CollisionTable, Floats, Within
+from atomsim.core.pairs.collisions import n_collision_pairs
 from atomsim.scene.language import Bonds, Rest, Scene, Vector
 from atomsim.scene.source import KeyPath
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
-from atomsim.core.near import pair_squares
+from atomsim.core.pairs.near import pair_squares
 
 Pairs = tuple[Indices, Indices]
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from atomsim.compiler.selections import Selections, lay_out
 from atomsim.core.model import Floats
-from atomsim.scene.css_colors import CSS_COLORS
 from atomsim.scene.language import Scene
-from atomsim.scene.selection import parse_selection
+from atomsim.scene.language.css_colors import CSS_COLORS
+from atomsim.scene.language.selection import parse_selection
 
 PALETTE = ("#4682b4", "#b22222", "#2e8b57", "#daa520", "#8a5ba5", "#d2691e", "#5f9ea0", "#c0538c")
 """Colours of groups that do not choose one, in order of declaration."""

@@ -35,7 +35,7 @@ from atomsim.core.model import (
     TorqueForce,
     Within,
 )
-from atomsim.core.near import pair_squares, squared_distance
+from atomsim.core.pairs.near import pair_squares, squared_distance
 from atomsim.errors import Problem, SceneError
 from atomsim.scene.language import (
     Bonds,

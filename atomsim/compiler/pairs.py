@@ -8,7 +8,7 @@ import numpy as np
 
 from atomsim.compiler.selections import Selections
 from atomsim.core.model import Floats, Indices
-from atomsim.core.near import distinct, near_pairs
+from atomsim.core.pairs.near import distinct, near_pairs
 from atomsim.scene.language import AllPairsBonds, Bonds, DistanceThresholdBonds, ListedBonds, NeighbourBonds
 
 Pairs = tuple[Indices, Indices]

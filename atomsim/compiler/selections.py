@@ -12,7 +12,7 @@ from atomsim.compiler.shapes import count_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Indices
 from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
-from atomsim.scene.selection import SELECTION_KEYS, parse_selection
+from atomsim.scene.language.selection import SELECTION_KEYS, parse_selection
 from atomsim.scene.source import KeyPath
 
 LARGE = 1 << 26

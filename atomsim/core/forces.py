@@ -8,7 +8,6 @@ from typing import assert_never
 
 import numpy as np
 
-from atomsim.core.collisions import as_index
 from atomsim.core.model import (
     DampingForce,
     ExternalForce,
@@ -20,7 +19,8 @@ from atomsim.core.model import (
     TetherForce,
     TorqueForce,
 )
-from atomsim.core.near import distinct
+from atomsim.core.pairs.collisions import as_index
+from atomsim.core.pairs.near import distinct
 
 Apply = Callable[[int, Floats, Floats, Floats], None]
 """Adds one force: (round_index, position, velocity, impulse), arrays (3, n_atoms), the last one changed in place."""

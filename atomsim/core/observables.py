@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from atomsim.core.bonds import joined
-from atomsim.core.collisions import CONTACT_SQUARED
 from atomsim.core.model import BondTable, Floats, Model, Observables, State
-from atomsim.core.near import STRETCH, pair_squares
-from atomsim.core.near_list import NearList
+from atomsim.core.numpy_backend.bonds import joined
+from atomsim.core.pairs.collisions import CONTACT_SQUARED
+from atomsim.core.pairs.near import STRETCH, pair_squares
+from atomsim.core.pairs.near_list import NearList
 
 
 class Observer:

@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
-from atomsim.core.blowup import explain, loss
+from atomsim.core.diagnosis.blowup import explain, loss
+from atomsim.core.diagnosis.energy import EnergyBudget
 from atomsim.core.digest import state_digest
-from atomsim.core.energy import EnergyBudget
 from atomsim.core.model import Frame, Model, State
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
-from atomsim.core.stepper import NumpyStepper
 from atomsim.errors import BlowUpError
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from atomsim.scene.language import Scene
+from atomsim.scene.mistakes.wording import shown
 from atomsim.scene.source import KeyPath, dotted
-from atomsim.scene.wording import shown
 
 ONLY_WORDS_AND_PICTURES = {"title", "description", "rounds", "render"}
 """What may change while a run goes on: it moves no atom."""

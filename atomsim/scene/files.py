@@ -8,9 +8,9 @@ import re
 from pathlib import Path
 
 from atomsim.errors import Mark, Problem, SceneError
-from atomsim.scene.strict_yaml import MAX_CHARACTERS, read_yaml
-from atomsim.scene.tree import Node, merge
-from atomsim.scene.wording import printable, shown, suggestion
+from atomsim.scene.mistakes.wording import printable, shown, suggestion
+from atomsim.scene.yaml.strict_yaml import MAX_CHARACTERS, read_yaml
+from atomsim.scene.yaml.tree import Node, merge
 
 MAX_FILES = 16
 

@@ -10,15 +10,15 @@ from typing import Any
 from pydantic import ValidationError
 
 from atomsim.errors import Problem, SceneError
-from atomsim.scene.blanks import check_blanks
 from atomsim.scene.files import read_scene_file, read_scene_text
 from atomsim.scene.language import Scene
+from atomsim.scene.mistakes.blanks import check_blanks
+from atomsim.scene.mistakes.references import check_deletions, check_references
+from atomsim.scene.mistakes.wording import printable
 from atomsim.scene.overrides import override
-from atomsim.scene.references import check_deletions, check_references
 from atomsim.scene.source import Source
-from atomsim.scene.tree import Node, Places, without_nulls
-from atomsim.scene.wording import printable
-from atomsim.scene.written import to_yaml
+from atomsim.scene.yaml.tree import Node, Places, without_nulls
+from atomsim.scene.yaml.written import to_yaml
 
 MAX_PROBLEMS = 100
 """Further mistakes are counted, not listed."""
@@ -85,7 +85,7 @@ def _validated(data: dict[str, Any], source: Source, problems: list[Problem]) ->
     try:
         return Scene.model_validate(data)
     except ValidationError as error:
-        from atomsim.scene.complaints import complaints  # only a mistake needs it
+        from atomsim.scene.mistakes.complaints import complaints  # only a mistake needs it
 
         problems += complaints(error, data, source)
         return None

@@ -6,10 +6,10 @@ import shlex
 from collections.abc import Iterable
 
 from atomsim.errors import Mark, Problem, SceneError
+from atomsim.scene.mistakes.wording import meant, readable, shown, suggestion
 from atomsim.scene.source import KeyPath, dotted
-from atomsim.scene.strict_yaml import read_yaml
-from atomsim.scene.tree import Node
-from atomsim.scene.wording import meant, readable, shown, suggestion
+from atomsim.scene.yaml.strict_yaml import read_yaml
+from atomsim.scene.yaml.tree import Node
 
 _FILE = "--set "
 

@@ -13,7 +13,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from atomsim.scene import language
 from atomsim.scene.field_docs import descriptions
 from atomsim.scene.language import Declaration, Scene
-from atomsim.scene.wording import either
+from atomsim.scene.mistakes.wording import either
 
 Schema: TypeAlias = dict[str, Any]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from atomsim.errors import Mark, Problem
-from atomsim.scene.wording import readable
+from atomsim.scene.mistakes.wording import readable
 
 KeyPath: TypeAlias = tuple[str | int, ...]
 """The keys and list indices that lead to a value: `("bonds", "right", "rule")`."""

@@ -1,9 +1,9 @@
 """Trajectories: recording a run and reading it back; knows no scene, and nothing of how a run comes about."""
 
 from atomsim.trajectory.header import End, Header, count_frames, trajectory_bytes
+from atomsim.trajectory.journal.form import journal_path
 from atomsim.trajectory.reader import Frames, Trajectory
 from atomsim.trajectory.recorder import Recorder, check_target, recover
-from atomsim.trajectory.records import journal_path
 
 __all__ = [
     "End",

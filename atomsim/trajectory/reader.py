@@ -15,8 +15,8 @@ from atomsim.core.model import Floats, Frame, Indices
 from atomsim.errors import InputError, command
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
 from atomsim.trajectory.header import End, Header
-from atomsim.trajectory.journal import Journal
-from atomsim.trajectory.records import HEAD, journal_path
+from atomsim.trajectory.journal.form import HEAD, journal_path
+from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -107,7 +107,7 @@ class Trajectory(Sequence[Frame]):
         if signature != _HDF5_SIGNATURE:
             raise DamageError("not a trajectory of atomsim")
         # Deferred because HDF5 takes longer to import than a small scene to run.
-        from atomsim.trajectory.finished import Finished
+        from atomsim.trajectory.hdf5.read import Finished
 
         return Finished(found)
 

@@ -17,11 +17,11 @@ from atomsim.errors import InputError, RunError, command
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
-from atomsim.trajectory.journal import Journal
+from atomsim.trajectory.journal.form import journal_path
+from atomsim.trajectory.journal.read import Journal
+from atomsim.trajectory.journal.write import JournalWriter
 from atomsim.trajectory.reader import Trajectory, is_trajectory
-from atomsim.trajectory.records import journal_path
 from atomsim.trajectory.rows import fill, frame_of, row_dtype
-from atomsim.trajectory.writer import JournalWriter
 
 BLOCK_SECONDS = 1.0
 """A kill loses what was recorded in about this time."""
@@ -195,7 +195,7 @@ def recover(path: str | os.PathLike[str]) -> None:
 
 def _build(writer: JournalWriter, path: Path) -> None:
     # Deferred because HDF5 takes longer to import than a small scene to run.
-    from atomsim.trajectory.build import build
+    from atomsim.trajectory.hdf5.write import build
 
     with reading(writer.path):
         journal = writer.read()

@@ -61,7 +61,7 @@ def test_closed_streams(folder, closed):
 NOISE = """
 import contextlib, os
 from atomsim.cli import main
-from atomsim.core.stepper import NumpyStepper
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 advance = NumpyStepper.advance
 def noisy(stepper, n_rounds):
     advance(stepper, n_rounds)
@@ -165,7 +165,7 @@ def test_titles_do_not_command_the_terminal(cli):
 def test_too_little_memory_is_one_line(folder):
     """A limit that NumPy fits into and the scene does not."""
     script = (
-        "import resource, atomsim.record; resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29)); "
+        "import resource, atomsim.tasks.run; resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29)); "
         "from atomsim.cli import main; main()"
     )
     settings = ("--set", "groups.left.count=9000000", "--set", "bonds.left=null", "--set", "collisions=null")

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from atomsim.cli.progress import Progress, duration, progress_line, rate
+from atomsim.cli.terminal.progress import Progress, duration, progress_line, rate
 
 
 class Terminal(io.StringIO):

@@ -56,7 +56,7 @@ def test_a_stopped_run_writes_what_there_is_and_says_how_to_go_on(tmp_path, numb
 SECOND_SIGNAL = """
 import os, signal
 from atomsim.cli import main
-from atomsim.core.stepper import NumpyStepper
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 advance = NumpyStepper.advance
 def twice(stepper, n_rounds):
     advance(stepper, n_rounds)
@@ -188,7 +188,7 @@ def test_a_blown_up_run_is_not_gone_on_with(cli):
 
 def test_a_run_killed_before_its_first_frame_begins_anew(cli, monkeypatch):
     """Its journal says what is to be run, and no more; every command says so."""
-    from atomsim import record
+    from atomsim.tasks import run as record
 
     def killed(*_, **__):
         raise KeyboardInterrupt

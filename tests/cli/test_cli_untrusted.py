@@ -14,11 +14,11 @@ TRACED = """
 import json, os, sys, tempfile
 from pathlib import Path
 import atomsim
-from atomsim import record
+from atomsim.tasks import run as record
 from atomsim.cli.describe import describe_model, describe_trajectory
-from atomsim.compare import first_difference
+from atomsim.tasks.compare import first_difference
 from atomsim.errors import AtomsimError
-from atomsim.inside import compile_inside
+from atomsim.tasks.recompute import compile_inside
 
 OURS = (sys.prefix, sys.base_prefix, str(Path(atomsim.__file__).parent))
 DANGEROUS = ("subprocess", "os.system", "os.exec", "os.posix_spawn", "os.fork", "socket", "exec", "ctypes", "pickle",

@@ -21,7 +21,7 @@ import atheris
 with atheris.instrument_imports(include=["atomsim"]):
     from atomsim.cli.describe import describe_model
     from atomsim.compiler import compile_scene, room, selections
-    from atomsim.core import near
+    from atomsim.core.pairs import near
     from atomsim.errors import SceneError
     from atomsim.scene import loads
     from atomsim.scene.schema import field_docs

@@ -14,8 +14,9 @@ import pytest
 
 import atomsim
 from atomsim.cli import main
-from atomsim.core import bond_forms, collisions, stepper
-from atomsim.golden import Golden, check_golden, read_golden, record_golden
+from atomsim.core.numpy_backend import bond_forms, stepper
+from atomsim.core.pairs import collisions
+from atomsim.tasks.golden import Golden, check_golden, read_golden, record_golden
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = ROOT / "tests" / "golden"

@@ -15,10 +15,10 @@ import pytest
 from support.running import atoms_at, compiled, paper_scene
 
 from atomsim.compiler import compile_scene
-from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Floats, Indices, Model, State
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
-from atomsim.core.stepper import NumpyStepper
+from atomsim.core.pairs.collisions import table_pairs_near
 
 ROUNDS = 400
 

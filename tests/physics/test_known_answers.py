@@ -10,8 +10,8 @@ import pytest
 from support.running import after, atoms_at, compiled
 
 from atomsim.core.model import Floats, Model, State
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
-from atomsim.core.stepper import NumpyStepper
 
 REST = 3.0
 

@@ -18,8 +18,8 @@ from atomsim.core.model import Model, State
 
 pytest.importorskip("numba", reason="the backend is an extra")
 
-from atomsim.core.numba_backend import bond_plan, near_plan
 from atomsim.core.numba_backend.stepper import NumbaStepper
+from atomsim.core.plans import bond_plan, near_plan
 
 THREADS = [1, 2, 3]
 

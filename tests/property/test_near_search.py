@@ -9,8 +9,8 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atomsim.core import near
 from atomsim.core.model import Floats
+from atomsim.core.pairs import near
 
 SEARCHES = {
     "tiles": {"DENSE_LIMIT": 1 << 60},

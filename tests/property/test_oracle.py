@@ -9,8 +9,8 @@ from support.running import PAPER_SCENES, after, digest_of, paper_scene, scene_o
 
 from atomsim.compiler import compile_scene
 from atomsim.core.model import State
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
-from atomsim.core.stepper import NumpyStepper
 
 CONTACT_ROUNDS = {
     "rods": (190, 260),

@@ -11,10 +11,11 @@ from support.oracle import build
 from support.running import after, digest_of, is_finite, without_mistakes
 from support.strategies import scenes
 
-from atomsim.core import bonds, near_list
 from atomsim.core.model import Model, State
+from atomsim.core.numpy_backend import bonds
+from atomsim.core.numpy_backend.stepper import NumpyStepper
+from atomsim.core.pairs import near_list
 from atomsim.core.simulate import simulate
-from atomsim.core.stepper import NumpyStepper
 from atomsim.errors import BlowUpError
 
 ROUNDS = 12

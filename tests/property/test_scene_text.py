@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from atomsim.errors import Mark, Problem, SceneError
 from atomsim.scene.loader import LoadedScene, load, loads
-from atomsim.scene.strict_yaml import read_yaml
-from atomsim.scene.tree import Node, merge, without_nulls
-from atomsim.scene.written import to_yaml
+from atomsim.scene.yaml.strict_yaml import read_yaml
+from atomsim.scene.yaml.tree import Node, merge, without_nulls
+from atomsim.scene.yaml.written import to_yaml
 
 GOOD = """\
 atomsim: 1

@@ -10,7 +10,7 @@ import numpy as np
 from atomsim.compiler import compile_scene
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Model, State
-from atomsim.core.stepper import NumpyStepper
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.errors import SceneError
 from atomsim.scene.language import Scene
 from atomsim.scene.loader import load

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from atomsim.cli import main
 from atomsim.errors import InputError
-from atomsim.pictures import render
+from atomsim.tasks.render import render
 from atomsim.trajectory import Trajectory, journal_path, recorder
 
 SCENE = Path(__file__).parents[2] / "scenes" / "rods.yaml"

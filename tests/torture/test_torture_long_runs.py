@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from atomsim.cli.progress import progress_line
-from atomsim.record import run
+from atomsim.cli.terminal.progress import progress_line
 from atomsim.scene import loads
+from atomsim.tasks.run import run
 from atomsim.trajectory import Trajectory, journal_path, recorder, trajectory_bytes
 
 ROUNDS = 1_000_000 if os.environ.get("ATOMSIM_LONG") == "1" else 20_000

@@ -11,8 +11,8 @@ from support.everything import EVERYTHING
 from support.running import compiled, digest_of
 
 import atomsim
-from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Model, State
+from atomsim.core.pairs.collisions import table_pairs_near
 from benchmarks import fluid, page, pour, rounds
 from benchmarks.bench import main
 from benchmarks.engines import NUMPY, PLAIN, Engine

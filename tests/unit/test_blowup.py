@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from support.running import atoms_at, compiled
 
-from atomsim.core.blowup import FLOWN_APART, explain, is_sound, loss
-from atomsim.core.energy import EnergyBudget, total_energy
+from atomsim.core.diagnosis.blowup import FLOWN_APART, explain, is_sound, loss
+from atomsim.core.diagnosis.energy import EnergyBudget, total_energy
 from atomsim.core.model import Model, State
 from atomsim.core.observables import Observer
 from atomsim.core.simulate import frame_of, simulate

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from support.running import atoms_at, compiled
 
-from atomsim.core import bonds
-from atomsim.core.bond_forms import DenseForm
-from atomsim.core.bonds import bond_forms, joined
 from atomsim.core.model import BondTable, Floats, Indices, Origin
+from atomsim.core.numpy_backend import bonds
+from atomsim.core.numpy_backend.bond_forms import DenseForm
+from atomsim.core.numpy_backend.bonds import bond_forms, joined
 
 ORIGIN = Origin("bonds", "b", "<scene>", 1)
 

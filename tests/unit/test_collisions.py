@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from atomsim.core.collisions import as_index, table_pairs_near
 from atomsim.core.model import Between, CollisionTable, Origin, Within
+from atomsim.core.pairs.collisions import as_index, table_pairs_near
 
 ORIGIN = Origin("collisions", "c", "<scene>", 1)
 

@@ -8,7 +8,7 @@ from support.running import atoms_at, scene_of
 from atomsim.compiler import compile_scene
 from atomsim.compiler.colors import PALETTE, atom_color
 from atomsim.errors import SceneError
-from atomsim.scene.css_colors import CSS_COLORS
+from atomsim.scene.language.css_colors import CSS_COLORS
 
 GROUPS = {
     "left": atoms_at((0, 0, 0), (1, 0, 0), (2, 0, 0), color="#F00"),

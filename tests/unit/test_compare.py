@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from atomsim.compare import first_difference
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Frame, GroupSpan, Observables, Origin
+from atomsim.tasks.compare import first_difference
 
 GROUPS = [
     GroupSpan(name, start, stop, "#000000", Origin("groups", name, "a.yaml", 1))

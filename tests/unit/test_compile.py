@@ -14,9 +14,9 @@ from support.running import atoms_at, compiled, scene_of
 
 from atomsim.compiler import compile_scene, room
 from atomsim.compiler.colors import PALETTE
-from atomsim.core import near
-from atomsim.core.collisions import n_collision_pairs
 from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
+from atomsim.core.pairs import near
+from atomsim.core.pairs.collisions import n_collision_pairs
 from atomsim.errors import SceneError
 from atomsim.scene.loader import loads
 

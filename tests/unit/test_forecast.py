@@ -8,7 +8,7 @@ import pytest
 from support.running import PAPER_SCENES, atoms_at, compiled, paper_scene
 
 from atomsim.compiler import compile_scene
-from atomsim.core.forecast import forecast
+from atomsim.core.diagnosis.forecast import forecast
 
 ROD = {"left": {"shape": "string", "count": 70, "step": [0, 0.25, 0.25]}}
 RIGID = {"left": {"within": "left", "rule": "all-pairs"}}

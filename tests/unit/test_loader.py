@@ -13,7 +13,7 @@ import pytest
 from atomsim.errors import Mark, SceneError
 from atomsim.scene.loader import MAX_PROBLEMS, load, loads
 from atomsim.scene.schema import schema
-from atomsim.scene.tree import Node, merge, without_nulls
+from atomsim.scene.yaml.tree import Node, merge, without_nulls
 
 REPOSITORY = Path(__file__).parents[2]
 GOOD = """\

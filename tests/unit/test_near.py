@@ -7,8 +7,8 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from atomsim.core import near
-from atomsim.core.near import distinct, near_pairs, squared_distance
+from atomsim.core.pairs import near
+from atomsim.core.pairs.near import distinct, near_pairs, squared_distance
 
 
 def test_cells_find_what_tiles_find_among_thousands() -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from atomsim.core import near_list
 from atomsim.core.model import Between, CollisionTable, Origin, Within
-from atomsim.core.near_list import WIDEST_SKIN, NearList, stay_apart, widest_skin
+from atomsim.core.pairs import near_list
+from atomsim.core.pairs.near_list import WIDEST_SKIN, NearList, stay_apart, widest_skin
 
 LINE = np.array([np.arange(8) * 0.5, np.zeros(8), np.zeros(8)])
 

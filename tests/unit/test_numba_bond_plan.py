@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from atomsim.core.model import BondTable, Indices, Origin
-from atomsim.core.numba_backend import bond_plan
-from atomsim.core.numba_backend.bond_plan import plan_bonds
-from atomsim.core.numba_backend.records import LANES, UNBOUND, Bonds
+from atomsim.core.plans import bond_plan
+from atomsim.core.plans.bond_plan import plan_bonds
+from atomsim.core.plans.records import LANES, UNBOUND, Bonds
 
 NONE = np.empty(0, dtype=np.int64)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from support.running import compiled
 
-from atomsim.core import backends
-from atomsim.core.backends import choose
+from atomsim.core import backend as backends
+from atomsim.core.backend import choose
 from atomsim.core.numba_backend import cache
-from atomsim.core.stepper import NumpyStepper
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.errors import InputError
 
 MODEL, STATE = compiled({"pair": {"shape": "string", "count": 2, "step": [1, 0, 0]}})

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from support.running import after, compiled, digest_of
 
-from atomsim.core.collisions import table_pairs_near
 from atomsim.core.model import Between, CollisionTable, Floats, Origin, State, Within
+from atomsim.core.pairs.collisions import table_pairs_near
 
 pytest.importorskip("numba", reason="the backend is an extra")
 
-from atomsim.core.numba_backend import near_plan
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
-from atomsim.core.numba_backend.near_plan import empty_list, plan_grids, plan_queries
-from atomsim.core.numba_backend.records import NearPairs
 from atomsim.core.numba_backend.stepper import NumbaStepper
+from atomsim.core.plans import near_plan
+from atomsim.core.plans.near_plan import empty_list, plan_grids, plan_queries
+from atomsim.core.plans.records import NearPairs
 
 MARGIN = 3
 

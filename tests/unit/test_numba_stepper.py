@@ -8,17 +8,18 @@ from support.everything import EVERYTHING
 from support.running import after, compiled, digest_of, is_finite
 
 from atomsim.core.model import Model, State
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.simulate import simulate
-from atomsim.core.stepper import NumpyStepper
 from atomsim.errors import BlowUpError
 
 pytest.importorskip("numba", reason="the backend is an extra")
 
-from atomsim.core.numba_backend import force_plan, stepper
+from atomsim.core.numba_backend import stepper
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
 from atomsim.core.numba_backend.proof import prove
 from atomsim.core.numba_backend.round_kernels import advance_rounds
 from atomsim.core.numba_backend.stepper import NumbaStepper
+from atomsim.core.plans import force_plan
 
 
 class IdleStepper:

@@ -10,8 +10,8 @@ import pytest
 from support.running import SCENES
 
 from atomsim.errors import InputError, RunError, SceneError
-from atomsim.record import StopWishedError, resume, run
 from atomsim.scene import load
+from atomsim.tasks.run import StopWishedError, resume, run
 from atomsim.trajectory import End, Recorder
 
 

@@ -14,7 +14,7 @@ from atomsim.scene import language
 from atomsim.scene.field_docs import declaration_at, descriptions, words_in
 from atomsim.scene.language import Camera, Collisions, Declaration, Jitter, Render, RingGroup, Rotation, Scene, Spin
 from atomsim.scene.schema import field_docs, schema, schema_text
-from atomsim.scene.strict_yaml import read_yaml
+from atomsim.scene.yaml.strict_yaml import read_yaml
 
 REPOSITORY = Path(__file__).parents[2]
 SHIPPED = sorted(REPOSITORY.glob("scenes/*.yaml"))

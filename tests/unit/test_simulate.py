@@ -7,8 +7,8 @@ import pytest
 from support.running import after, atoms_at, compiled, digest_of
 
 from atomsim.core.model import Frame, Model, State
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.simulate import simulate
-from atomsim.core.stepper import NumpyStepper
 from atomsim.errors import BlowUpError
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support.running import after, atoms_at, compiled, is_finite
 
-from atomsim.core import stiffness
-from atomsim.core.stiffness import is_surely_stable, largest_stiffness, largest_time_step
+from atomsim.core.diagnosis import stiffness
+from atomsim.core.diagnosis.stiffness import is_surely_stable, largest_stiffness, largest_time_step
 
 ALL_PAIRS = {"b": {"within": "all", "rule": "all-pairs"}}
 TWO = {"a": atoms_at((0, 0, 0), (3, 0, 0))}

@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from atomsim.errors import Mark, SceneError
-from atomsim.scene import strict_yaml
 from atomsim.scene.source import KeyPath
-from atomsim.scene.strict_yaml import MAX_CHARACTERS, MAX_DEPTH, MAX_VALUES, read_yaml
-from atomsim.scene.tree import Node, Places
+from atomsim.scene.yaml import strict_yaml
+from atomsim.scene.yaml.strict_yaml import MAX_CHARACTERS, MAX_DEPTH, MAX_VALUES, read_yaml
+from atomsim.scene.yaml.tree import Node, Places
 
 
 def read(text: str) -> Node:

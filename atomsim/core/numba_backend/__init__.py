@@ -1,8 +1,8 @@
-"""The compiled backend: the rounds of `atomsim.core.stepper`, bit for bit, several times faster; needs Numba.
+"""The compiled backend: the rounds of `atomsim.core.numpy_backend`, bit for bit, several times faster; needs Numba.
 
 Here every force is written from the receiving atom's side: an atom's subtotal is a loop over its partners in increasing
 order, so atoms can be shared out to threads and nothing has to be scattered. A pair is computed twice, once from either
 side; since c_i − c_k is exactly −(c_k − c_i), both sides agree.
 
-Only `atomsim.core.backends` imports this package, and only when Numba is going to be used.
+Only `atomsim.core.backend` imports this package, and only when Numba is going to be used.
 """

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from atomsim.core.model import Floats
 from atomsim.core.numba_backend.jit import inner
-from atomsim.core.numba_backend.records import LANES, Bonds
+from atomsim.core.plans.records import LANES, Bonds
 
 
 @inner

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.model import Floats
-from atomsim.core.numba_backend.force_plan import DAMPING, PUSH, TETHER, TORQUE
 from atomsim.core.numba_backend.jit import inner
-from atomsim.core.numba_backend.records import Forces
+from atomsim.core.plans.force_plan import DAMPING, PUSH, TETHER, TORQUE
+from atomsim.core.plans.records import Forces
 
 
 @inner

@@ -11,7 +11,7 @@ import numpy as np
 
 from atomsim.core.model import Floats, Indices
 from atomsim.core.numba_backend.jit import inner, kernel
-from atomsim.core.numba_backend.records import Grids, NearPairs, Queries
+from atomsim.core.plans.records import Grids, NearPairs, Queries
 
 STRIDE_Y, STRIDE_Z = 73856093, 19349663
 """Spread rows of cells over the buckets; the cells of a row along x are neighbours there, as atoms of a block are."""

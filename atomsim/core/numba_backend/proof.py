@@ -7,7 +7,7 @@ import numpy as np
 from atomsim.core.digest import state_digest
 from atomsim.core.model import BondTable, CollisionTable, DampingForce, Model, Origin, State, Within
 from atomsim.core.numba_backend.stepper import NumbaStepper
-from atomsim.core.stepper import NumpyStepper
+from atomsim.core.numpy_backend.stepper import NumpyStepper
 
 N_ATOMS = 40
 N_ROUNDS = 20

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from atomsim.core import near_list
-from atomsim.core.collisions import CONTACT_SQUARED
 from atomsim.core.model import Floats
 from atomsim.core.numba_backend.bond_kernels import add_rows, add_tiles
 from atomsim.core.numba_backend.force_kernels import add_forces
 from atomsim.core.numba_backend.jit import inner, kernel
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
-from atomsim.core.numba_backend.records import Bonds, Forces, Grids, Motion, NearPairs, Queries, Watch
+from atomsim.core.pairs import near_list
+from atomsim.core.pairs.collisions import CONTACT_SQUARED
+from atomsim.core.plans.records import Bonds, Forces, Grids, Motion, NearPairs, Queries, Watch
 
 MAKING_COST = 100
 """Finding the partners of one atom takes a kernel about as long as one round of so many partners."""

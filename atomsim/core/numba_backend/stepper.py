@@ -9,17 +9,17 @@ from typing import TypeVar
 
 import numpy as np
 
-from atomsim.core.collisions import involved_atoms
 from atomsim.core.forces import held_atoms
 from atomsim.core.memory import free_memory
 from atomsim.core.model import Floats, Model, State
-from atomsim.core.near_list import SKIN, better_skin, widest_skin
-from atomsim.core.numba_backend.bond_plan import plan_bonds
-from atomsim.core.numba_backend.force_plan import Pushes, in_order, plan_forces, runs_of
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
-from atomsim.core.numba_backend.near_plan import empty_list, plan_grids, plan_queries
-from atomsim.core.numba_backend.records import LANES, Forces, Grids, Motion, Watch
 from atomsim.core.numba_backend.round_kernels import MAKING_COST, advance_rounds
+from atomsim.core.pairs.collisions import involved_atoms
+from atomsim.core.pairs.near_list import SKIN, better_skin, widest_skin
+from atomsim.core.plans.bond_plan import plan_bonds
+from atomsim.core.plans.force_plan import Pushes, in_order, plan_forces, runs_of
+from atomsim.core.plans.near_plan import empty_list, plan_grids, plan_queries
+from atomsim.core.plans.records import LANES, Forces, Grids, Motion, Watch
 
 CALL_ATOM_ROUNDS = 1 << 21
 """Atoms times rounds computed in one call of a kernel, which nothing can interrupt: some tenths of a second."""

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from atomsim.scene.css_colors import CSS_COLORS
-from atomsim.scene.selection import SelectionSyntaxError, parse_selection
+from atomsim.scene.language.css_colors import CSS_COLORS
+from atomsim.scene.language.selection import SelectionSyntaxError, parse_selection
 
 
 class Declaration(BaseModel):

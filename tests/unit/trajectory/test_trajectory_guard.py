@@ -17,7 +17,7 @@ from sample_run import digest_of, frame, header, holds, killed, record
 
 from atomsim.errors import InputError
 from atomsim.trajectory import End, Trajectory, guard
-from atomsim.trajectory.records import BONDS, FRAMES, GO_ON, HEAD, PREFIX, checksum_start
+from atomsim.trajectory.journal.form import BONDS, FRAMES, GO_ON, HEAD, PREFIX, checksum_start
 from atomsim.trajectory.rows import row_dtype
 
 ROUNDS = [0, 10, 20, 30, 40]

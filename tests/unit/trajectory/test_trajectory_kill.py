@@ -12,7 +12,7 @@ from pathlib import Path
 from sample_run import digest_of, go_on, header, holds, record
 
 from atomsim.trajectory import Recorder, Trajectory, journal_path, recover
-from atomsim.trajectory.journal import Journal
+from atomsim.trajectory.journal.read import Journal
 
 N_KILLS = 400 if os.environ.get("ATOMSIM_LONG") else 12
 

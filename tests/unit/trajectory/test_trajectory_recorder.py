@@ -15,7 +15,7 @@ from sample_run import digest_of, frame, go_on, header, holds, is_same_state, ki
 
 from atomsim.errors import InputError, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
-from atomsim.trajectory.records import FRAMES, PREFIX
+from atomsim.trajectory.journal.form import FRAMES, PREFIX
 
 
 @pytest.fixture

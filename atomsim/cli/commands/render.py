@@ -1,0 +1,92 @@
+"""`atomsim render`: what users type to get pictures, read and handed on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import typer
+
+from atomsim.cli.terminal.output import say, tell
+
+Part = TypeVar("Part", int, float)
+
+
+def render(
+    trajectories: Annotated[list[Path], typer.Argument(metavar="OUT", help="Trajectories, one row each.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="PICTURE",
+            help="The picture to write: png, jpg, webp, pdf or svg.  [default: OUT with .png]",
+        ),
+    ] = None,
+    rounds: Annotated[
+        str | None, typer.Option(metavar="0,250,...", help="The rounds to show, instead of what the scene says.")
+    ] = None,
+    camera: Annotated[
+        str | None, typer.Option(metavar="AZ,EL", help="Direction and height of the viewer [degrees].")
+    ] = None,
+    size: Annotated[str | None, typer.Option(metavar="WxH", help="Size of one frame [pixels].")] = None,
+    frames: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write one PNG per frame into this folder, and no strip."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that atomsim did not draw.")] = False,
+) -> None:
+    """Draw a strip: frames side by side, a row per trajectory.
+
+    Example:
+
+    atomsim render rods.h5 rod-thread.h5 threads.h5 -o figure1.png
+    """
+    from atomsim.drawing.files import is_our_picture
+    from atomsim.errors import InputError
+    from atomsim.tasks import render as pictures
+
+    wanted = None if rounds is None else _rounds(rounds)
+    angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
+    pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
+    if frames is not None:
+        written = pictures.render_frames(
+            trajectories, frames, rounds=wanted, camera=angles, size=pixels, notice=_notice
+        )
+        say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
+        return
+    first = trajectories[0]
+    picture = output or (first.with_suffix(".png") if first.name else first)  # a folder is told of when it is read
+    is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
+    if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
+        raise InputError(f"{picture} exists and atomsim did not draw it; add --force to replace it")
+    pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels, notice=_notice)
+    say(str(picture))
+
+
+def _notice(message: str) -> None:
+    tell(message)
+
+
+def _rounds(text: str) -> list[int]:
+    """Read `0,250,500`."""
+    from atomsim.errors import InputError
+
+    try:
+        rounds = [int(part) for part in text.split(",")]
+    except ValueError:
+        rounds = [-1]
+    if any(round_index < 0 for round_index in rounds):
+        raise InputError(f"--rounds needs whole numbers with commas between, as in 0,250,500 (got {text})")
+    return rounds
+
+
+def _pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
+    """Read two numbers."""
+    from atomsim.errors import InputError
+
+    try:
+        first, second = (kind(part) for part in text.lower().split(separator))
+    except ValueError:
+        raise InputError(f"{option} needs two numbers, as in {example} (got {text})") from None
+    return first, second

@@ -1,0 +1,134 @@
+"""`atomsim run` and `atomsim recover`: a scene becomes a trajectory; knows neither the language nor the dynamics."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from atomsim.cli.options import Backend, Threads
+from atomsim.cli.terminal.output import say, tell
+from atomsim.errors import command
+
+if TYPE_CHECKING:
+    from atomsim.tasks.run import Outcome
+
+DEFAULT_OUTPUT = Path("out.h5")
+
+
+def run(
+    scene: Annotated[
+        Path | None, typer.Argument(metavar="SCENE", help="The scene, a YAML file.", show_default=False)
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="OUT", help="The trajectory to write.")
+    ] = DEFAULT_OUTPUT,
+    rounds: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Iteration rounds to run, instead of what the scene says.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scene; may be repeated."),
+    ] = None,
+    backend: Backend = "auto",
+    threads: Threads = None,
+    compress: Annotated[bool, typer.Option("--compress", help="Write a smaller file, slowly.")] = False,
+    resume: Annotated[
+        Path | None,
+        typer.Option(metavar="OUT", help="Go on with this trajectory; it holds its scene."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the trajectory if it exists.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+) -> None:
+    """Simulate a scene and record its trajectory.
+
+    Examples:
+
+    atomsim run scenes/rods.yaml -o rods.h5 --set time_step=0.005
+
+    atomsim run --resume rods.h5 --rounds 8000
+    """
+    from atomsim.cli.terminal.progress import Progress
+    from atomsim.cli.terminal.signals import wishes_to_stop
+    from atomsim.errors import InputError
+    from atomsim.scene import load
+    from atomsim.tasks import run as record
+
+    if resume is not None and (output != DEFAULT_OUTPUT or force or compress):
+        raise InputError("--resume goes on with the file that it names; -o, --force and --compress do not go with it")
+    if scene is None and resume is not None and settings:
+        raise InputError("--resume goes on with the scene inside the trajectory, which --set cannot change")
+    if scene is None and resume is None:
+        raise InputError("name a scene to run, as in: atomsim run scenes/rods.yaml")
+    started = time.monotonic()
+    loaded = None if scene is None else load(scene, settings or ())
+    with wishes_to_stop(_to_go_on(resume or output)) as wish, Progress(is_shown=False if quiet else None) as progress:
+
+        def report(round_index: int, last_round: int) -> None:
+            progress.report(round_index, last_round)
+            if wish.is_wished():
+                raise record.StopWishedError
+
+        if resume is not None:
+            outcome = record.resume(
+                resume, rounds=rounds, scene=loaded, backend=backend, threads=threads, report=report
+            )
+        elif loaded is not None:
+            outcome = record.run(
+                loaded,
+                output,
+                rounds=rounds,
+                replace=force,
+                compress=compress,
+                backend=backend,
+                threads=threads,
+                report=report,
+                warn=None if quiet else _warn,
+            )
+    if outcome.warning is not None and not quiet:
+        _warn(outcome.warning)
+    if wish.signal_number is not None and outcome.end.kind == "interrupted":
+        tell(f"stopped after round {outcome.last_round} of {outcome.rounds}; {_to_go_on(outcome.path)}")
+        raise typer.Exit(128 + wish.signal_number)
+    if not quiet:
+        _summarise(outcome, time.monotonic() - started)
+
+
+def recover(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="The trajectory whose journal is left.")],
+) -> None:
+    """Build the HDF5 file from the journal of a killed run.
+
+    Example:
+
+    atomsim recover out.h5
+    """
+    from atomsim.trajectory import Trajectory
+    from atomsim.trajectory import recover as rebuild
+
+    rebuild(trajectory)
+    with Trajectory(trajectory) as frames:
+        say(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")
+
+
+def _warn(warning: str) -> None:
+    tell(f"warning: {warning}")
+
+
+def _to_go_on(path: Path) -> str:
+    return f"to go on: {command('run --resume', path)}"
+
+
+def _summarise(outcome: Outcome, seconds: float) -> None:
+    """Print what was done and what to type next."""
+    from atomsim.cli.terminal.progress import rate
+    from atomsim.core.memory import readable_bytes
+
+    n_rounds = outcome.last_round - outcome.first_round
+    size = readable_bytes(outcome.path.stat().st_size)
+    say(f"{outcome.path}: {n_rounds:,} rounds in {seconds:.2f} s ({rate(n_rounds / seconds)} rounds/s), {size}")
+    say(f"computed by {outcome.backend}")
+    say(f"digest of round {outcome.last_round}: {outcome.digest}")
+    say(f"next: {command('render', outcome.path)}")

@@ -1,0 +1,1 @@
+"""Which pairs of atoms are declared to collide, and which of them are near."""

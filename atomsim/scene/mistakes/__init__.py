@@ -1,0 +1,1 @@
+"""Mistakes in scenes, in the words of the scene language."""

@@ -1,0 +1,78 @@
+"""Names that a scene mentions but does not have; needs no atoms, so it is told before compiling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+from atomsim.errors import Problem
+from atomsim.scene.language.selection import SELECTION_KEYS, SelectionSyntaxError, parse_selection
+from atomsim.scene.mistakes.wording import meant, readable
+from atomsim.scene.source import KeyPath, Source, dotted
+from atomsim.scene.yaml.tree import Node
+
+
+def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
+    """Find names that are no groups.
+
+    Args:
+        data: the plain data of a scene without nulls; what is malformed is left to validation.
+        source: the places of the values.
+    """
+    groups = list(_mapping(data.get("groups")))
+    if not groups:
+        return []
+    return [
+        source.problem(path, f"there is no group `{readable(name)}`; {meant(name, groups, 'the groups are')}")
+        for path, name in [*_selected(data), *_colored(data)]
+        if name not in groups and name != "all"
+    ]
+
+
+def check_deletions(root: Node) -> list[Problem]:
+    """Find names that a scene deletes and what it extends does not have.
+
+    Args:
+        root: the merged tree of a scene; what is malformed is left to validation.
+    """
+    problems = []
+    for section in ("groups", "bonds", "collisions", "forces"):
+        named = root.child(section)
+        entries = named.value if named is not None and isinstance(named.value, dict) else {}
+        present = [name for name, node in entries.items() if node.value is not None]
+        for name, node in entries.items():
+            if node.deletes_nothing:
+                remedy = meant(name, present, f"the {section} are") if present else f"there are no {section}"
+                message = f"there is no `{readable(name)}` to delete; {remedy}"
+                problems.append(Problem(node.mark, dotted((section, name)), message))
+    return problems
+
+
+def _selected(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+    """Every group that a selection names."""
+    for section in ("bonds", "collisions", "forces"):
+        for name, declaration in _mapping(data.get(section)).items():
+            for key in SELECTION_KEYS:
+                for path, text in _texts(_mapping(declaration).get(key), (section, name, key)):
+                    with suppress(SelectionSyntaxError):
+                        yield path, parse_selection(text).group
+
+
+def _colored(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+    for text in _mapping(_mapping(data.get("render")).get("colors")):
+        with suppress(SelectionSyntaxError):
+            yield ("render", "colors", text), parse_selection(text).group
+
+
+def _texts(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
+    """Every text in a text or in nested lists of texts."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, list):
+        for index, inner in enumerate(value):
+            yield from _texts(inner, (*path, index))
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}

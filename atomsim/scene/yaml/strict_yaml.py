@@ -1,0 +1,194 @@
+"""Strict YAML, text to tree: one document of plain values, each key once; knows nothing of scenes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import yaml
+
+from atomsim.errors import Mark, Problem, SceneError
+from atomsim.scene.mistakes.wording import NEEDS_BRACKETS, readable
+from atomsim.scene.source import KeyPath, dotted
+from atomsim.scene.yaml.scalars import is_number, resolve
+from atomsim.scene.yaml.syntax_errors import explain
+from atomsim.scene.yaml.tree import Node
+
+MAX_CHARACTERS = 2**24
+MAX_DEPTH = 32
+MAX_VALUES = 1_000_000
+
+_UNPRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_LINE_BREAK = re.compile("\r\n|\r|\n")
+_COMMENT = re.compile("[ \t]+(#[^\r\n]{1,200})")
+_PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+Place = Callable[[int, int], Mark]
+"""Makes a mark of a line and a column, both counted from 1."""
+
+
+def read_yaml(text: str, place: Place, at: KeyPath = ()) -> Node:
+    """Read a YAML document into a tree.
+
+    Args:
+        text: the document; at most 16 MiB, 32 levels deep, a million values with aliases written out.
+        place: makes a mark of line and column.
+        at: the path of the document in the scene.
+
+    Returns:
+        The tree; an empty text is null.
+
+    Raises:
+        SceneError: no YAML, or YAML that surprises: duplicate keys, tags, merge keys, keys that are no words,
+            several documents.
+    """
+    if len(text) > MAX_CHARACTERS:
+        raise SceneError([Problem(place(1, 1), "", "the text is longer than 16 MiB")])
+    unprintable = _UNPRINTABLE.search(text)
+    if unprintable is not None:
+        lines = _LINE_BREAK.split(text[: unprintable.start()])
+        message = f"the character U+{ord(unprintable.group()):04X} cannot stand in YAML"
+        raise SceneError([Problem(place(len(lines), len(lines[-1]) + 1), "", message)])
+    return _Reader(text, place).document(at)
+
+
+class _Reader:
+    """Recursive descent over the events of a YAML parser; the depth is bounded before Python's is."""
+
+    def __init__(self, text: str, place: Place) -> None:
+        self._text = text
+        self._events = self._parse(text)
+        self._place = place
+        self._problems: list[Problem] = []
+        self._anchors: dict[str, Node | None] = {}
+        self._n_values = 0
+
+    def document(self, at: KeyPath) -> Node:
+        """Read the one document of the text."""
+        next(self._events)
+        start = next(self._events)
+        if isinstance(start, yaml.StreamEndEvent):
+            return Node(None, self._place(1, 1), blank="")
+        root = self._node(next(self._events), at)
+        next(self._events)
+        after = next(self._events)
+        if not isinstance(after, yaml.StreamEndEvent):
+            self._refuse(after, (), "a second document begins here; a scene is one document")
+        if self._problems:
+            raise SceneError(self._problems)
+        return replace(root, mark=self._place(1, 1))
+
+    def _parse(self, text: str) -> Iterator[yaml.Event]:
+        try:
+            yield from yaml.parse(text, Loader=_PARSER)
+        except yaml.MarkedYAMLError as error:
+            mark = error.problem_mark or error.context_mark
+            place = self._place(mark.line + 1, mark.column + 1) if mark is not None else self._place(1, 1)
+            raise SceneError([*self._problems, Problem(place, "", explain(error, text))]) from None
+
+    def _node(self, event: yaml.Event, path: KeyPath) -> Node:
+        """Read the value that an event begins."""
+        self._count(event, path, 1, len(path))
+        mark = self._mark(event)
+        if isinstance(event, yaml.AliasEvent):
+            return self._aliased(event, path)
+        assert isinstance(event, (yaml.ScalarEvent, yaml.CollectionStartEvent))  # nothing else begins a value
+        if event.tag is not None:
+            tag = readable(event.tag.replace("tag:yaml.org,2002:", "!!"))
+            self._refuse(event, path, f"tags are not allowed; leave out `{tag}`")
+        if event.anchor is not None:
+            self._anchors[event.anchor] = None
+        if isinstance(event, yaml.ScalarEvent):
+            node = Node(self._scalar(event, path), mark, blank=self._blank(event))
+        elif isinstance(event, yaml.SequenceStartEvent):
+            node = Node(self._list(path), mark)
+        else:
+            node = Node(self._mapping(path), mark)
+        if event.anchor is not None:
+            self._anchors[event.anchor] = node
+        return node
+
+    def _scalar(self, event: yaml.ScalarEvent, path: KeyPath) -> str | int | float | bool | None:
+        if event.implicit[0]:
+            return resolve(event.value)
+        unprintable = _UNPRINTABLE.search(event.value)
+        if unprintable is not None:
+            self._refuse(event, path, f"the character U+{ord(unprintable.group()):04X} cannot stand in a text")
+        return str(event.value)
+
+    def _blank(self, event: yaml.ScalarEvent) -> str | None:
+        """Return the comment that stands where a value is missing, often an empty one; None where there is a value."""
+        if event.value or not event.implicit[0] or event.start_mark is None:
+            return None
+        comment = _COMMENT.match(self._text, event.start_mark.index)
+        return comment[1] if comment is not None else ""
+
+    def _list(self, path: KeyPath) -> list[Node]:
+        items: list[Node] = []
+        while not isinstance(event := next(self._events), yaml.SequenceEndEvent):
+            items.append(self._node(event, (*path, len(items))))
+        return items
+
+    def _mapping(self, path: KeyPath) -> dict[str, Node]:
+        entries: dict[str, Node] = {}
+        while not isinstance(event := next(self._events), yaml.MappingEndEvent):
+            key = self._key(event, path)
+            node = self._node(next(self._events), (*path, key))
+            if key in entries:
+                first = entries[key].mark.line
+                where = f", first on line {first}" if first else ""
+                remedy = f"; {NEEDS_BRACKETS}" if node.value is None and is_number(key) else ""
+                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}{remedy}")
+            else:
+                entries[key] = replace(node, mark=self._mark(event))
+        return entries
+
+    def _key(self, event: yaml.Event, path: KeyPath) -> str:
+        """Read a key; whatever it looks like, it is text."""
+        if not isinstance(event, yaml.ScalarEvent):
+            raise self._refused(event, path, "a key must be a plain word")
+        self._node(event, path)
+        if event.value == "<<" and event.implicit[0]:
+            self._refuse(event, path, "merge keys `<<` are not part of the scene language; write the keys out")
+        return str(event.value)
+
+    def _aliased(self, event: yaml.AliasEvent, path: KeyPath) -> Node:
+        """Return what an alias repeats, marked at the alias."""
+        name = str(event.anchor)
+        if name not in self._anchors:
+            self._refuse(event, path, f"there is no anchor `&{readable(name)}` before this alias")
+            return Node(None, self._mark(event))
+        node = self._anchors[name]
+        if node is None:
+            raise self._refused(event, path, f"the alias `*{readable(name)}` stands inside what it repeats")
+        n_values, depth = _extent(node)
+        self._count(event, path, n_values - 1, len(path) + depth)
+        return Node(node.value, self._mark(event))
+
+    def _count(self, event: yaml.Event, path: KeyPath, n_values: int, depth: int) -> None:
+        """Stop before a text, however short, becomes more than memory holds."""
+        self._n_values += n_values
+        if self._n_values > MAX_VALUES:
+            raise self._refused(event, (), f"the text stands for more than {MAX_VALUES:,} values")
+        if depth > MAX_DEPTH:
+            raise self._refused(event, (), f"values are nested more than {MAX_DEPTH} deep")
+
+    def _mark(self, event: yaml.Event) -> Mark:
+        start = event.start_mark
+        return self._place(start.line + 1, start.column + 1) if start is not None else self._place(1, 1)
+
+    def _refuse(self, event: yaml.Event, path: KeyPath, message: str) -> None:
+        self._problems.append(Problem(self._mark(event), dotted(path), message))
+
+    def _refused(self, event: yaml.Event, path: KeyPath, message: str) -> SceneError:
+        self._refuse(event, path, message)
+        return SceneError(self._problems)
+
+
+def _extent(node: Node) -> tuple[int, int]:
+    """Return how many values a node stands for, and how deep it goes."""
+    if not isinstance(node.value, (dict, list)):
+        return 1, 0
+    inner = [_extent(child) for child in (node.value.values() if isinstance(node.value, dict) else node.value)]
+    return 1 + sum(n_values for n_values, _ in inner), 1 + max((depth for _, depth in inner), default=0)

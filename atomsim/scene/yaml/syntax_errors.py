@@ -1,0 +1,61 @@
+"""The syntax errors of a YAML parser in plain words, with the usual remedy; knows no tree and no scene."""
+
+from __future__ import annotations
+
+import re
+
+import yaml
+
+from atomsim.scene.mistakes.wording import shown
+
+_LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
+
+_EXPLANATIONS = (
+    (
+        r"mapping values are not allowed",
+        "a `: ` cannot stand here; check indentation and the spaces after colons, and put text with a colon in quotes",
+    ),
+    (r"could not find expected ':'", "the key on {context} has no `: `, a colon and a space, after it"),
+    (r"',' or '\]'", "the list `[` of {context} is not closed, or a comma is missing"),
+    (r"',' or '}'", "the mapping `{{` of {context} is not closed, or a comma is missing"),
+    (r"unexpected end of stream|unexpected document separator", "the quote of {context} is not closed"),
+    (r"entries are not allowed", "a list item `- ` begins on a line of its own"),
+    (r"node content", "a value or a closing bracket is missing"),
+    (r"'-' indicator", "the list of {context} goes on only with `- `"),
+    (r"<document start>", "nothing can follow the end of the document"),
+    (r"unknown escape|escape code|hexdecimal", "`\\` in double quotes begins an escape; use single quotes"),
+    (r"alphabetic or numeric", "a value that begins with `*` or `&` needs quotes"),
+    (r"expected key|<block end>", "this does not fit the lines above it; check indentation and quotes"),
+)
+"""A pattern of the parser's words (those of libyaml and of PyYAML) and ours; `{context}` is where it began."""
+
+
+def explain(error: yaml.MarkedYAMLError, text: str) -> str:
+    """Return what is wrong at the place of a syntax error.
+
+    Args:
+        error: what the parser raised.
+        text: the whole text that it read.
+    """
+    problem = str(error.problem or error.context)
+    mark, context = error.problem_mark, error.context_mark
+    character = _line(text, mark)[mark.column : mark.column + 1] if mark is not None else ""
+    if "violates indentation" in problem or character == "\t":
+        return "a tab is not allowed here; indent with spaces"
+    if "cannot start any token" in problem:
+        return f"a value cannot begin with {shown(character)}; put it in quotes"
+    if character == "[":
+        return 'a `[` cannot stand here; text with brackets needs quotes inside brackets: "ring[0:10]"'
+    if character and character in "]}" and "']'" not in problem:
+        return f"this `{character}` closes nothing that is open here"
+    for pattern, explanation in _EXPLANATIONS:
+        if re.search(pattern, problem):
+            where = f"line {context.line + 1}" if context is not None else "the line before"
+            comment = "; ` #` begins a comment" if context is not None and " #" in _line(text, context) else ""
+            return explanation.format(context=where) + comment
+    return f"this is not YAML: {problem}"
+
+
+def _line(text: str, mark: yaml.Mark) -> str:
+    """Return the line of a mark, as YAML counts lines; the end of the text may be marked on the line after the last."""
+    return [*_LINE_BREAK.split(text), ""][mark.line]

@@ -1,0 +1,1 @@
+"""What a command does, without a terminal: run, render, compute again, compare, golden trajectories."""

@@ -1,0 +1,1 @@
+"""The finished trajectory: one HDF5 file, built from a journal."""

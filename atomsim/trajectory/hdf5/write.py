@@ -1,0 +1,165 @@
+"""From the journal to the finished HDF5 file, in the layout of H5MD 1.1; knows nothing of running or resuming.
+
+The bytes depend on the frames alone, not on how the journal groups them or how often the run was stopped.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import h5py
+import numpy as np
+
+from atomsim.errors import RunError, command
+from atomsim.trajectory import disk
+from atomsim.trajectory.document import FIELDS, contents_digest, document, storable
+from atomsim.trajectory.hdf5.layout import NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
+from atomsim.trajectory.hdf5.sink import Sink
+from atomsim.trajectory.interrupts import held
+from atomsim.trajectory.journal.form import journal_path
+from atomsim.trajectory.journal.read import Journal
+from atomsim.trajectory.rows import OBSERVABLES
+
+Group: TypeAlias = Any  # h5py has no types
+Dataset: TypeAlias = Any
+
+
+def build(journal: Journal, path: Path) -> None:
+    """Build the HDF5 file `path` from its journal; what stood under the name stays until the new file is complete.
+
+    Safe to repeat and to kill. The journal is left to the caller, who must hold its lock.
+
+    Raises:
+        RunError: there is no frame, or the file cannot be written; the message says where the frames are.
+    """
+    if len(journal.series) == 0:
+        raise RunError(
+            f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet; "
+            f"to run it: {command('run --resume', path)}"
+        )
+    temporary = disk.beside(path, ".tmp")
+    try:
+        try:
+            _write(journal, temporary)
+            disk.replace(temporary, path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise RunError(f"{path}: cannot be written: {error.strerror}; {_remedy(path)}") from error
+
+
+def _remedy(path: Path) -> str:
+    if journal_path(path).exists():
+        return f"all frames are safe in {journal_path(path)}: make room, then `{command('recover', path)}`"
+    return "its folder or its journal is gone, and the frames with it"
+
+
+def _write(journal: Journal, temporary: Path) -> None:
+    with Sink(temporary) as sink, held() as let_interrupts_through:
+
+        def between_pieces() -> None:
+            sink.check()
+            let_interrupts_through()
+
+        # Everything that could make two identical runs differ is switched off: times are not tracked, and the oldest
+        # and newest form of the format that may be chosen are fixed.
+        with h5py.File(sink, "w", libver=("earliest", "v110")) as file:
+            _write_identity(file, journal.header.versions.program)
+            _write_frames(journal, file, between_pieces)
+            _write_observables(journal, file)
+            _write_bonds(journal, file)
+            _write_parameters(journal, file.create_group(PARAMETERS))
+        sink.sync()
+
+
+def _write_identity(file: Group, program_version: str) -> None:
+    h5md = file.create_group("h5md")
+    h5md.attrs["version"] = np.array([1, 1], "<i4")
+    h5md.create_group("author").attrs["name"] = np.bytes_("unknown")
+    creator = h5md.create_group("creator")
+    creator.attrs["name"] = np.bytes_("atomsim")
+    creator.attrs["version"] = np.bytes_(program_version)
+
+
+def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[], None]) -> None:
+    header, series = journal.header, journal.series
+    atoms = file.create_group(PARTICLES)
+    atoms.attrs["unit_note"] = np.bytes_(UNIT_NOTE)
+    box = atoms.create_group("box")
+    box.attrs["dimension"] = np.int32(3)
+    box.attrs["boundary"] = np.array([b"none"] * 3)
+    position, velocity = atoms.create_group("position"), atoms.create_group("velocity")
+    position["step"] = series["round"]
+    position["time"] = series["round"] * header.time_step
+    position["time"].attrs["unit"] = UNITS["time"]
+    _share_time(file, velocity)
+    rows = chunk_rows(len(series), header.n_atoms)
+    values = {name: _create_value(atoms[name], name, journal, rows) for name in ("position", "velocity")}
+    for start in range(0, len(series), rows):
+        piece = journal.rows(start, min(start + rows, len(series)))
+        for name, value in values.items():
+            value[start : start + len(piece)] = piece[name]
+        between_pieces()
+    species = [np.full(group.stop - group.start, i, "<i4") for i, group in enumerate(header.groups)]
+    atoms["mass"] = np.ones(header.n_atoms)
+    atoms["species"] = np.concatenate(species)
+
+
+def _create_value(group: Group, name: str, journal: Journal, rows: int) -> Dataset:
+    n_atoms = journal.header.n_atoms
+    filters = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if journal.header.compress else {}
+    shape, chunks = (len(journal.series), n_atoms, 3), (rows, n_atoms, 3)
+    value = group.create_dataset("value", shape, "<f8", chunks=chunks, track_times=False, **filters)
+    value.attrs["unit"] = UNITS[name]
+    return value
+
+
+def _share_time(file: Group, group: Group) -> None:
+    """Every series has the times of the positions; hard links say so at no cost."""
+    for name in ("step", "time"):
+        group[name] = file[f"{PARTICLES}/position/{name}"]
+
+
+def _write_observables(journal: Journal, file: Group) -> None:
+    series, header = journal.series, journal.header
+    columns = {name: series[name] for name in OBSERVABLES}
+    # Asked for the time between two frames, MDAnalysis takes this one before it guesses.
+    columns["dt"] = np.full(len(series), header.record_every * header.time_step)
+    for name, column in columns.items():
+        group = file.create_group(f"observables/{name}")
+        group["value"] = column
+        _share_time(file, group)
+
+
+def _write_bonds(journal: Journal, file: Group) -> None:
+    bond = journal.header.bond
+    file["connectivity/bonds"] = bond
+    file["connectivity/bonds"].attrs["particles_group"] = file[PARTICLES].ref
+    # VMD counts atoms from 1.
+    file["parameters/vmd_structure/bond_from"] = bond[:, 0] + np.int32(1)
+    file["parameters/vmd_structure/bond_to"] = bond[:, 1] + np.int32(1)
+
+
+def _write_parameters(journal: Journal, group: Group) -> None:
+    header, end = journal.header, journal.end
+    values = document(header)
+    for name, kind in FIELDS.items():
+        group[name] = _texts(values[name]) if kind in ("text", "texts") else np.array(values[name], NUMBERS[kind])
+    group["scene_sha256"] = _texts(hashlib.sha256(values["scene"].encode()).hexdigest())
+    group["bond_table"] = header.bond_table
+    group["state_sha256"] = journal.series["digest"]
+    group["end"] = _texts(end.kind)
+    group["end_report"] = _texts(storable(end.report))
+    group["contents_sha256"] = _texts(contents_digest(header, end, journal.series))
+
+
+def _texts(value: str | list[str]) -> np.ndarray[Any, Any]:
+    """Return one text or several as UTF-8 of fixed length: texts of varying length would live in a heap of the file."""
+    encoded = [text.encode() for text in ([value] if isinstance(value, str) else value)]
+    longest = max((len(text) for text in encoded), default=0)
+    array = np.array(encoded, h5py.string_dtype("utf-8", max(1, longest)))
+    return array.reshape(()) if isinstance(value, str) else array
