@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import typer
 
-from atomsim.cli.commands.compare import compare, verify
+from atomsim.cli.commands.check import check
+from atomsim.cli.commands.compare import compare
 from atomsim.cli.commands.golden import golden
-from atomsim.cli.commands.inspect import check, schema, show
+from atomsim.cli.commands.recover import recover
 from atomsim.cli.commands.render import render
-from atomsim.cli.commands.run import recover, run
+from atomsim.cli.commands.run import run
+from atomsim.cli.commands.schema import schema
+from atomsim.cli.commands.show import show
+from atomsim.cli.commands.verify import verify
 from atomsim.version import __version__
 
 app = typer.Typer(

@@ -1,4 +1,4 @@
-"""`atomsim run` and `atomsim recover`: a scene becomes a trajectory; knows neither the language nor the dynamics."""
+"""`atomsim run`: a scene becomes a trajectory, or a trajectory goes on."""
 
 from __future__ import annotations
 
@@ -94,23 +94,6 @@ def run(
         raise typer.Exit(128 + wish.signal_number)
     if not quiet:
         _summarise(outcome, time.monotonic() - started)
-
-
-def recover(
-    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="The trajectory whose journal is left.")],
-) -> None:
-    """Build the HDF5 file from the journal of a killed run.
-
-    Example:
-
-    atomsim recover out.h5
-    """
-    from atomsim.trajectory import Trajectory
-    from atomsim.trajectory import recover as rebuild
-
-    rebuild(trajectory)
-    with Trajectory(trajectory) as frames:
-        say(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")
 
 
 def _warn(warning: str) -> None:

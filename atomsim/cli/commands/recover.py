@@ -1,0 +1,27 @@
+"""`atomsim recover`: the HDF5 file of a killed run, from its journal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from atomsim.cli.terminal.output import say
+
+
+def recover(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="The trajectory whose journal is left.")],
+) -> None:
+    """Build the HDF5 file from the journal of a killed run.
+
+    Example:
+
+    atomsim recover out.h5
+    """
+    from atomsim.trajectory import Trajectory
+    from atomsim.trajectory import recover as rebuild
+
+    rebuild(trajectory)
+    with Trajectory(trajectory) as frames:
+        say(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")

@@ -1,0 +1,17 @@
+"""`atomsim schema`: the JSON Schema of the scene language."""
+
+from __future__ import annotations
+
+
+def schema() -> None:
+    """Print the JSON Schema of the scene language.
+
+    Editors complete and check scenes with it.
+
+    Example:
+
+    atomsim schema > scene.schema.json
+    """
+    from atomsim.scene.schema import schema_text
+
+    print(schema_text(), end="")

@@ -1,0 +1,45 @@
+"""`atomsim verify`: whether a trajectory is what the scene inside it gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from atomsim.cli.options import Backend, Threads
+from atomsim.cli.terminal.output import say, tell
+
+
+def verify(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
+    backend: Backend = "auto",
+    threads: Threads = None,
+) -> None:
+    """Compute a trajectory again and compare, bit for bit.
+
+    It is computed from the scene inside it; positions and velocities are compared. Exit code 1 if it differs.
+
+    Example:
+
+    atomsim verify out.h5
+    """
+    from atomsim.core.backend import choose
+    from atomsim.core.simulate import simulate
+    from atomsim.tasks.compare import first_difference
+    from atomsim.tasks.recompute import compile_inside
+    from atomsim.trajectory import Trajectory
+
+    with Trajectory(trajectory) as recorded:
+        for notice in recorded.notices():
+            tell(notice)
+        header = recorded.header
+        _, model, state = compile_inside(header, trajectory)
+        last_round = int(recorded.rounds[-1])
+        make_stepper = choose(backend, threads, model, last_round).make_stepper
+        computed = simulate(model, state, last_round, header.record_every, make_stepper)
+        difference = first_difference(recorded, computed, header.groups)
+        if difference is not None:
+            say(f"different: {difference} (first: the file; second: computed now)")
+            raise typer.Exit(1)
+        say(f"identical: {len(recorded)} frames up to round {last_round} are what the scene gives")
