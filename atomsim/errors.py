@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,10 @@ def command(words: str, path: Path) -> str:
 
 
 class AtomsimError(Exception):
-    """An error with a message for the user; the command line prints the message and exits with `exit_code`."""
+    """An error with a message for the user; the command line prints the message and exits with `exit_code`.
+
+    An error may travel (pickled to another process, copied), so `args` are always what its class is called with.
+    """
 
     exit_code = 1
 
@@ -69,6 +73,9 @@ class Problem:
 class SceneError(InputError):
     """A scene with mistakes; carries all of them, in the order of the file (exit code 2)."""
 
-    def __init__(self, problems: list[Problem]) -> None:
+    def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(str(problem) for problem in problems))
+        super().__init__(self.problems)
+
+    def __str__(self) -> str:
+        return "\n".join(str(problem) for problem in self.problems)

@@ -19,7 +19,11 @@ class RuleError(ValueError):
 
     def __init__(self, key: str, message: str) -> None:
         self.key = key
-        super().__init__(message)
+        self.message = message
+        super().__init__(key, message)
+
+    def __str__(self) -> str:
+        return self.message
 
 
 def expand(bonds: Bonds, selections: Selections, position: Floats) -> Pairs:

@@ -24,7 +24,11 @@ class SelectionError(ValueError):
 
     def __init__(self, expression: str, message: str) -> None:
         self.expression = expression
-        super().__init__(message)
+        self.message = message
+        super().__init__(expression, message)
+
+    def __str__(self) -> str:
+        return self.message
 
 
 @dataclass(frozen=True, slots=True)

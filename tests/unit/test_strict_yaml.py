@@ -196,6 +196,30 @@ def test_what_would_fill_the_memory_ends_at_once(text: str, message: str) -> Non
     assert time.process_time() - begin < 10  # it takes about one
 
 
+class ShortSightedLoader(yaml.SafeLoader):
+    """A parser with a limit of its own, which it meets while it looks ahead: before it has handed over anything."""
+
+    def __init__(self, stream: str) -> None:
+        super().__init__(stream)
+        far = stream.find("[" * 41)
+        if far >= 0:
+            mark = yaml.Mark("", far + 40, 0, far + 40, None, 0)
+            raise yaml.scanner.ScannerError("while looking ahead", mark, "enough is enough", mark)
+
+
+@pytest.mark.parametrize("before", ["", "a: 1\na: 2\nb: *c\nd: "])
+def test_our_limit_of_nesting_speaks_before_that_of_any_parser(before: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(strict_yaml, "_PARSER", ShortSightedLoader)
+    assert refusal(before + "[" * 100_000).endswith(f"values are nested more than {MAX_DEPTH} deep")
+
+
+def test_what_is_no_limit_is_told_where_the_parser_stopped() -> None:
+    assert refusal("a: 1\na: 2\nb: @x").split("\n") == [
+        "t:2:1: a: duplicate key `a`, first on line 1",
+        't:3:4: a value cannot begin with "@"; put it in quotes',
+    ]
+
+
 def test_all_surprises_are_told_at_once() -> None:
     assert refusal("a: !!int 1\na: 2\n<<: {b: 1}\nc: *d\n[e]: 1").split("\n") == [
         "t:1:4: a: tags are not allowed; leave out `!!int`",

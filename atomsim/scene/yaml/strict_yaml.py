@@ -50,7 +50,17 @@ def read_yaml(text: str, place: Place, at: KeyPath = ()) -> Node:
         lines = _LINE_BREAK.split(text[: unprintable.start()])
         message = f"the character U+{ord(unprintable.group()):04X} cannot stand in YAML"
         raise SceneError([Problem(place(len(lines), len(lines[-1]) + 1), "", message)])
-    return _Reader(text, place).document(at)
+    reader = _Reader(text, place)
+    try:
+        return reader.document(at)
+    except SceneError:
+        if reader.refused_at is not None:
+            _Reader(text[: reader.refused_at], place).check_limits(at)
+        raise
+
+
+class _TooMuchError(SceneError):
+    """A text that crosses a limit."""
 
 
 class _Reader:
@@ -63,6 +73,8 @@ class _Reader:
         self._problems: list[Problem] = []
         self._anchors: dict[str, Node | None] = {}
         self._n_values = 0
+        self.refused_at: int | None = None
+        """The index of the character at which the parser gave up."""
 
     def document(self, at: KeyPath) -> Node:
         """Read the one document of the text."""
@@ -79,11 +91,25 @@ class _Reader:
             raise SceneError(self._problems)
         return replace(root, mark=self._place(1, 1))
 
+    def check_limits(self, at: KeyPath) -> None:
+        """Refuse a text that crosses a limit, whatever else is wrong with it.
+
+        A parser looks ahead: it may give up far beyond a limit of ours before it has handed over what crosses it. So
+        the text in front of that place is read once more.
+        """
+        try:
+            self.document(at)
+        except _TooMuchError:
+            raise
+        except SceneError:
+            pass
+
     def _parse(self, text: str) -> Iterator[yaml.Event]:
         try:
             yield from yaml.parse(text, Loader=_PARSER)
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
+            self.refused_at = mark.index if mark is not None else None
             place = self._place(mark.line + 1, mark.column + 1) if mark is not None else self._place(1, 1)
             raise SceneError([*self._problems, Problem(place, "", explain(error, text))]) from None
 
@@ -170,9 +196,9 @@ class _Reader:
         """Stop before a text, however short, becomes more than memory holds."""
         self._n_values += n_values
         if self._n_values > MAX_VALUES:
-            raise self._refused(event, (), f"the text stands for more than {MAX_VALUES:,} values")
+            raise self._too_much(event, f"the text stands for more than {MAX_VALUES:,} values")
         if depth > MAX_DEPTH:
-            raise self._refused(event, (), f"values are nested more than {MAX_DEPTH} deep")
+            raise self._too_much(event, f"values are nested more than {MAX_DEPTH} deep")
 
     def _mark(self, event: yaml.Event) -> Mark:
         start = event.start_mark
@@ -184,6 +210,10 @@ class _Reader:
     def _refused(self, event: yaml.Event, path: KeyPath, message: str) -> SceneError:
         self._refuse(event, path, message)
         return SceneError(self._problems)
+
+    def _too_much(self, event: yaml.Event, message: str) -> SceneError:
+        self._refuse(event, (), message)
+        return _TooMuchError(self._problems)
 
 
 def _extent(node: Node) -> tuple[int, int]:
