@@ -1,12 +1,11 @@
-"""Files that appear whole under their name or not at all; knows nothing of what is in them but our mark."""
+"""Files of pictures: which names they may have, and which of them are ours."""
 
 from __future__ import annotations
 
-import os
-from contextlib import suppress
 from pathlib import Path
 
-from atomsim.errors import InputError, RunError
+from atomsim.disk import behind
+from atomsim.errors import InputError
 
 MARK = "drawn by atomsim"
 """Stands as a comment in every picture of ours."""
@@ -20,7 +19,7 @@ def is_our_picture(path: Path) -> bool:
         return False
 
 
-def check_target(path: Path, extensions: tuple[str, ...]) -> None:
+def check_picture(path: Path, extensions: tuple[str, ...]) -> None:
     """Refuse a name that cannot become a file of ours, before any work is done for it.
 
     Args:
@@ -36,21 +35,6 @@ def check_target(path: Path, extensions: tuple[str, ...]) -> None:
         raise InputError(f"{path}: the extension tells the format; use {allowed} (got {given})")
     if path.is_dir():
         raise InputError(f"{path}: this is a folder; give the name of a file")
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: the folder {path.parent} does not exist")
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file so that its name never stands for half of it: under another name first, then moved into place.
-
-    Raises:
-        RunError: the disk does not take it; what stood under the name before is untouched.
-    """
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise RunError(f"{path}: cannot be written: {error.strerror or error}") from error
+    folder = behind(path).parent
+    if not folder.is_dir():
+        raise InputError(f"{path}: the folder {folder} does not exist")

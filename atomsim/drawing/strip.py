@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from atomsim.core.model import Floats, Frame
+from atomsim.disk import write_whole
 from atomsim.drawing.camera import View
-from atomsim.drawing.files import MARK, check_target, write_whole
+from atomsim.drawing.files import MARK, check_picture
 from atomsim.drawing.framing import fit, is_drawable
 from atomsim.drawing.layout import LARGE, Layout, frame_size
 from atomsim.drawing.picture import Pixels, draw
@@ -98,7 +99,7 @@ def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None)
         InputError: an extension, a folder or a size that will not do.
         RunError: the file cannot be written.
     """
-    check_target(out, tuple(_FORMATS))
+    check_picture(out, tuple(_FORMATS))
     n_frames = tuple(len(row.frames) for row in rows)
     size = size or frame_size(n_frames)
     check_size(size)

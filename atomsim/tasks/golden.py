@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from atomsim.core.model import Floats, Frame, GroupSpan
+from atomsim.disk import write_whole
 from atomsim.errors import InputError
 from atomsim.tasks.compare import Difference, frame_difference
 
@@ -100,7 +101,7 @@ def write_golden(golden: Golden, path: Path) -> None:
     """Write a golden as text, one round a line, whole or not at all.
 
     Raises:
-        OSError: the disk does not take it; what stood under the name before is untouched.
+        RunError: the disk does not take it; what stood under the name before is untouched.
     """
     document = {
         "golden": LAYOUT,
@@ -110,12 +111,7 @@ def write_golden(golden: Golden, path: Path) -> None:
             for number, frame in golden.frames.items()
         },
     }
-    temporary = path.with_name(path.name + ".new")
-    try:
-        temporary.write_text(json.dumps(document, indent=0) + "\n")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    write_whole(path, f"{json.dumps(document, indent=0)}\n".encode())
 
 
 def read_golden(path: Path) -> Golden:

@@ -13,11 +13,12 @@ from types import TracebackType
 import numpy as np
 
 from atomsim.core.model import Frame, State
+from atomsim.disk import behind, is_protected
 from atomsim.errors import InputError, RunError, command
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
-from atomsim.trajectory.journal.form import journal_path
+from atomsim.trajectory.journal.form import SUFFIX, journal_path
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.journal.write import JournalWriter
 from atomsim.trajectory.reader import Trajectory, is_trajectory
@@ -205,8 +206,9 @@ def _build(writer: JournalWriter, path: Path) -> None:
 
 def _trajectory_path(path: str | os.PathLike[str]) -> Path:
     path = Path(path)
-    if path.suffix == journal_path(Path("-")).suffix:
-        raise InputError(f"{path}: this is the name of a journal; name its trajectory, {path.with_suffix('')}")
+    file = behind(path)
+    if file.suffix == SUFFIX:
+        raise InputError(f"{file}: this is the name of a journal; name its trajectory, {file.with_suffix('')}")
     return path
 
 
@@ -232,12 +234,15 @@ def check_target(path: str | os.PathLike[str], *, replace: bool) -> Path:
 
 
 def _check_free(path: Path, *, replace: bool) -> None:
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: there is no folder {path.parent}")
+    folder = behind(path).parent
+    if not folder.is_dir():
+        raise InputError(f"{path}: there is no folder {folder}")
     if path.is_dir():
         raise InputError(f"{path}: is a folder; name a file in it")
     if path.exists() and not path.is_file():
         raise InputError(f"{path}: is not a regular file")
+    if is_protected(path):
+        raise InputError(f"{path}: is write-protected; choose another name with -o, or allow writing to it")
     for taken in (path, journal_path(path)):
         if taken.exists() and not is_trajectory(taken):
             raise InputError(f"{taken} exists and is no trajectory; choose another name with -o")

@@ -1,12 +1,9 @@
-"""Files that appear whole or not at all."""
-
-import errno
-from pathlib import Path
+"""Names that a picture may have."""
 
 import pytest
 
-from atomsim.drawing.files import check_target, write_whole
-from atomsim.errors import InputError, RunError
+from atomsim.drawing.files import check_picture
+from atomsim.errors import InputError
 
 
 @pytest.mark.parametrize(
@@ -21,34 +18,16 @@ from atomsim.errors import InputError, RunError
 def test_names_that_cannot_be_written_are_refused(tmp_path, name, message):
     (tmp_path / "folder.png").mkdir()
     with pytest.raises(InputError) as caught:
-        check_target(tmp_path / name, (".png", ".svg"))
+        check_picture(tmp_path / name, (".png", ".svg"))
     assert str(caught.value) == message.format(*[tmp_path] * message.count("{}"))
 
 
 def test_capitals_are_as_good(tmp_path):
-    check_target(tmp_path / "A.PNG", (".png", ".svg"))
+    check_picture(tmp_path / "A.PNG", (".png", ".svg"))
 
 
-def test_a_file_is_replaced_whole(tmp_path):
-    path = tmp_path / "a.png"
-    write_whole(path, b"old")
-    write_whole(path, b"new")
-    assert path.read_bytes() == b"new"
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_full_disk_leaves_the_old_file_and_no_litter(tmp_path, monkeypatch):
-    path = tmp_path / "a.png"
-    write_whole(path, b"old")
-
-    def half(self: Path, content: bytes) -> int:
-        with self.open("wb") as file:
-            file.write(content[:1])
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", half)
-    with pytest.raises(RunError) as caught:
-        write_whole(path, b"new")
-    assert str(caught.value) == f"{path}: cannot be written: No space left on device"
-    assert path.read_bytes() == b"old"
-    assert list(tmp_path.iterdir()) == [path]
+def test_what_a_link_leads_to_needs_a_folder(tmp_path):
+    (tmp_path / "a.png").symlink_to(tmp_path / "none" / "b.png")
+    with pytest.raises(InputError) as caught:
+        check_picture(tmp_path / "a.png", (".png", ".svg"))
+    assert str(caught.value) == f"{tmp_path}/a.png: the folder {tmp_path}/none does not exist"

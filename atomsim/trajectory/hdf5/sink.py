@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 from types import TracebackType
 
-from atomsim.trajectory.disk import write_all
+from atomsim.disk import write_all
 
 
 class Sink:

@@ -13,8 +13,8 @@ from typing import Any, TypeAlias
 import h5py
 import numpy as np
 
+from atomsim import disk
 from atomsim.errors import RunError, command
-from atomsim.trajectory import disk
 from atomsim.trajectory.document import FIELDS, contents_digest, document, storable
 from atomsim.trajectory.hdf5.layout import NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
 from atomsim.trajectory.hdf5.sink import Sink
@@ -28,7 +28,9 @@ Dataset: TypeAlias = Any
 
 
 def build(journal: Journal, path: Path) -> None:
-    """Build the HDF5 file `path` from its journal; what stood under the name stays until the new file is complete.
+    """Build the HDF5 file `path`, or the one behind that link, from its journal.
+
+    What stood under the name stays until the new file is complete.
 
     Safe to repeat and to kill. The journal is left to the caller, who must hold its lock.
 
@@ -40,11 +42,12 @@ def build(journal: Journal, path: Path) -> None:
             f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet; "
             f"to run it: {command('run --resume', path)}"
         )
-    temporary = disk.beside(path, ".tmp")
+    target = disk.behind(path)
+    temporary = disk.beside(target, ".tmp")
     try:
         try:
             _write(journal, temporary)
-            disk.replace(temporary, path)
+            disk.replace(temporary, target)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise

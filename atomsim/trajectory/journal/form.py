@@ -19,8 +19,8 @@ import struct
 import zlib
 from pathlib import Path
 
+from atomsim.disk import behind, beside
 from atomsim.errors import InputError
-from atomsim.trajectory.disk import beside
 
 HEAD, BONDS, FRAMES, END, GO_ON = b"atom.hea", b"atom.bon", b"atom.fra", b"atom.end", b"atom.goo"
 """The kinds of record; the first also tells that a file is a journal."""
@@ -29,15 +29,19 @@ PREFIX = struct.Struct("<8sQI")
 """Kind, length of the payload in bytes, CRC-32 of both and of the payload."""
 
 
+SUFFIX = ".part"
+"""By how much the name of a journal is longer than that of its trajectory."""
+
+
 def journal_path(path: Path) -> Path:
-    """Return where the journal of a trajectory lives: next to it.
+    """Return where the journal of a trajectory lives: next to it, or next to the file that a link leads to.
 
     Raises:
-        InputError: the path has no name, such as `.`
+        InputError: the path has no name, such as `.`, or is a link that leads nowhere.
     """
     if not path.name:
         raise InputError(f"{path}: this is a folder, not a trajectory")
-    return beside(path, ".part")
+    return beside(behind(path), SUFFIX)
 
 
 def checksum_start(kind: bytes, length: int) -> int:

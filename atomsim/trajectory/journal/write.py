@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from atomsim import disk
 from atomsim.errors import RunError, command
-from atomsim.trajectory import disk
 from atomsim.trajectory.document import document
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import BONDS, END, FRAMES, GO_ON, HEAD, PREFIX, checksum_start

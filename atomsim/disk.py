@@ -1,4 +1,4 @@
-"""The few dealings with the file system that must not go wrong halfway; knows nothing of trajectories."""
+"""Dealings with the file system that must not go wrong halfway: locks, whole files, names given to finished ones."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import contextlib
 import errno
 import fcntl
 import os
+import stat
 from pathlib import Path
 
-from atomsim.errors import RunError
+from atomsim.errors import InputError, RunError
 
 _NO_LOCKS_HERE = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP}
 _NO_HARD_LINKS_HERE = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK}
@@ -17,6 +18,25 @@ _NO_HARD_LINKS_HERE = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK
 def beside(path: Path, suffix: str) -> Path:
     """Return the path whose name is longer by `suffix`."""
     return path.with_name(path.name + suffix)
+
+
+def behind(path: Path) -> Path:
+    """Return the file that a path leads to: itself, or what its symbolic links end at, which need not exist yet.
+
+    Raises:
+        InputError: the links lead in a circle.
+    """
+    if not os.path.islink(path):  # noqa: PTH114 - Path.is_symlink fails where the folder may not be looked into
+        return path
+    end = Path(os.path.realpath(path))
+    if end.is_symlink():
+        raise InputError(f"{path}: its links lead in a circle")
+    return end
+
+
+def is_protected(path: Path) -> bool:
+    """Tell whether a file is there that may not be written to; replacing it would not ask."""
+    return path.exists() and not os.access(path, os.W_OK)
 
 
 def open_locked(path: Path, *, create: bool = False) -> int:
@@ -84,9 +104,51 @@ def publish(temporary: Path, path: Path) -> None:
 
 
 def replace(temporary: Path, path: Path) -> None:
-    """Put a finished file in the place of another so that, whatever happens, one of the two stands there."""
+    """Put a finished file in the place of another so that, whatever happens, one of the two stands there.
+
+    Who may read and write the new file is as with the old one.
+    """
+    _inherit_access(temporary, path)
     os.replace(temporary, path)  # noqa: PTH105
     sync_folder(path.parent)
+
+
+def _inherit_access(temporary: Path, path: Path) -> None:
+    """Give a new file the group and the permissions of the one whose place it takes, or less if they are refused."""
+    with contextlib.suppress(OSError):
+        old, new = path.stat(), temporary.stat()
+        mode = stat.S_IMODE(old.st_mode)
+        if old.st_gid != new.st_gid:
+            try:
+                os.chown(temporary, -1, old.st_gid)
+            except OSError:
+                mode &= ~stat.S_IRWXG  # they were meant for another group
+        temporary.chmod(mode)
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file, or the one behind a link, so that its name never stands for half of it.
+
+    It is written under another name first, then moved into place.
+
+    Raises:
+        RunError: the disk does not take it; what stood under the name before is untouched.
+    """
+    try:
+        target = behind(path)
+        if is_protected(target):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        temporary = beside(target, f".{os.getpid()}.tmp")
+        try:
+            temporary.write_bytes(content)
+            _inherit_access(temporary, target)
+            temporary.replace(target)
+        except OSError:
+            with contextlib.suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise RunError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
 def sync_folder(folder: Path) -> None:
