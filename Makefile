@@ -5,10 +5,10 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENES := $(sort $(wildcard scenes/*.yaml))
 
-.PHONY: help demo test check format tests golden figures reference bench torture fuzz clean
+.PHONY: help demo test test-newest test-lowest check format tests golden figures reference bench torture fuzz lock upgrade clean
 
 help: ## list the targets
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 demo: $(VENV)/installed ## install, run scenes/rods.yaml, draw the strip
 	$(BIN)/atomsim run scenes/rods.yaml --force
@@ -52,25 +52,58 @@ fuzz: $(VENV)/installed-fuzz ## coverage-guided fuzzing of scenes: five minutes
 	$(BIN)/python tests/fuzz/fuzz_scene.py -max_total_time=300
 
 clean: ## remove what the other targets made
-	rm -rf $(VENV) out.h5 out.png
+	rm -rf $(VENV) $(VENV)-newest $(VENV)-lowest out.h5 out.png
 
-$(VENV)/installed: pyproject.toml
+# The locked versions with their hashes; then the project itself, which needs nothing more.
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+$(VENV)/installed: pyproject.toml requirements/run.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(INSTALL) --require-hashes --requirement requirements/run.txt
+	$(INSTALL) --no-deps --no-build-isolation --editable .
 	@touch $@
 
-$(VENV)/installed-dev: pyproject.toml
+$(VENV)/installed-dev: pyproject.toml requirements/dev.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(INSTALL) --require-hashes --requirement requirements/dev.txt
+	$(INSTALL) --no-deps --no-build-isolation --editable .
 	@touch $(VENV)/installed $@
 
 $(VENV)/installed-fuzz: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
+	$(INSTALL) --editable '.[fuzz]'
 	@touch $@
 
-$(VENV)/installed-bench: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fast]'
-	@for peer in jax warp-lang openmm; do \
-		$(BIN)/python -m pip install --quiet --disable-pip-version-check $$peer || echo "$$peer: not installed"; \
-	done
+$(VENV)/installed-bench: $(VENV)/installed-dev
+	@for peer in jax warp-lang openmm; do $(INSTALL) $$peer || echo "$$peer: not installed"; done
 	@touch $@
+
+# Other versions than the locked ones: only what depends on them is tried, and warnings are told, not errors.
+SHORT := --numprocesses 2 --dist worksteal -W default tests/unit tests/cli tests/golden
+NEWEST_PYTHON := $(firstword $(foreach v,14 13 12 11,$(shell python3.$(v) -c 'print("python3.$(v)")' 2>/dev/null)) $(PYTHON))
+
+test-newest: ## a short pass with the newest versions, on the newest Python at hand
+	$(NEWEST_PYTHON) -m venv --clear $(VENV)-newest
+	$(VENV)-newest/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(VENV)-newest/bin/python -m pytest $(SHORT)
+
+test-lowest: ## a short pass with the lowest versions that pyproject.toml allows
+	$(PYTHON) -m venv --clear $(VENV)-lowest
+	$(VENV)-lowest/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes \
+		--requirement requirements/lowest.txt
+	$(VENV)-lowest/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(VENV)-lowest/bin/python -m pytest $(SHORT)
+
+COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --no-annotate --no-header
+HASHED  := $(COMPILE) requirements/build.in --generate-hashes
+
+lock: $(VENV)/installed-dev ## write requirements/ again after a change of pyproject.toml; what is locked stays
+	$(HASHED) --extra dev --output-file requirements/dev.txt
+	$(HASHED) --constraint requirements/dev.txt --output-file requirements/run.txt
+	$(COMPILE) --extra fast --resolution lowest-direct --output-file $(VENV)/lowest.txt
+	$(HASHED) --extra dev --constraint $(VENV)/lowest.txt --output-file requirements/lowest.txt
+
+upgrade: $(VENV)/installed-dev ## move the locked versions to the newest, and say what moved
+	@cp requirements/dev.txt $(VENV)/dev-before.txt
+	@$(HASHED) --upgrade --extra dev --output-file requirements/dev.txt
+	@$(MAKE) --no-print-directory lock
+	@diff $(VENV)/dev-before.txt requirements/dev.txt | sed -n '/==/{s/ \\$$//; s/^</was/p; s/^>/now/p}'

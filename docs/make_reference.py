@@ -24,6 +24,11 @@ EXAMPLES = ROOT / "docs" / "examples"
 
 GENERATED = "<!-- Written by `make reference` from the code and docs/examples; changes by hand are lost. -->\n"
 
+RECIPE = """\
+# yaml-language-server: $schema=../../atomsim/scene/scene.schema.json
+# A recipe; docs/recipes.md tells what it shows.
+"""
+
 SHAPES = ("StringGroup", "RingGroup", "PolygonGroup", "PlaneGroup", "BlockGroup", "AtomsGroup")
 RULES = ("AllPairsBonds", "NeighbourBonds", "DistanceThresholdBonds", "ListedBonds")
 KINDS = ("Damping", "Gravity", "Push", "Hold", "Oscillate", "Torque", "Tether")
@@ -110,7 +115,15 @@ def generated() -> dict[Path, str]:
         ROOT / "docs" / "scene-reference.md": "\n".join(_scene_reference()),
         ROOT / "docs" / "commands.md": "\n".join(_commands()),
         ROOT / "atomsim" / "scene" / "scene.schema.json": schema_text(),
+        **dict(_recipes()),
     }
+
+
+def _recipes() -> Iterator[tuple[Path, str]]:
+    """Yield the scenes of the recipes page as files that come with the program."""
+    page = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
+    for name, scene in re.findall(r"^```yaml\n# (\S+)\n(.*?)^```$", page, re.DOTALL | re.MULTILINE):
+        yield ROOT / "scenes" / "recipes" / name, f"{RECIPE}{scene}"
 
 
 def _scene_reference() -> Iterator[str]:
