@@ -12,7 +12,6 @@ from email import message_from_bytes
 from pathlib import Path
 
 import pytest
-
 from support.process import COMMAND
 
 ROOT = Path(__file__).parents[2]
