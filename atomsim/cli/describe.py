@@ -10,7 +10,7 @@ from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR
 from atomsim.core.diagnosis.forecast import forecast
 from atomsim.core.diagnosis.stiffness import largest_time_step
 from atomsim.core.forces import held_atoms
-from atomsim.core.memory import readable_bytes
+from atomsim.core.free_memory import readable_bytes
 from atomsim.core.model import BondTable, CollisionTable, GroupSpan, Indices, Model, State
 from atomsim.core.numpy_backend.bonds import bond_forms
 from atomsim.core.pairs.collisions import n_collision_pairs
@@ -34,7 +34,7 @@ def describe_model(model: Model, state: State, rounds: int, record_every: int) -
         record_every: rounds between two frames.
     """
     n_frames = count_frames(rounds, record_every)
-    size = trajectory_bytes(model.n_atoms, rounds, record_every)
+    size = trajectory_bytes(model.n_atoms, rounds, record_every, model.memory)
     limit = largest_time_step(model, state)
     stable = [] if limit == math.inf else [f"stable below {limit:.3g}"]
     n_bonds = sum(table.first.size for table in model.bonds)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from atomsim.compiler.selections import Selections
-from atomsim.core.memory import free_memory, readable_bytes
+from atomsim.core.free_memory import free_memory, readable_bytes
 from atomsim.scene.language import Bonds
 
 BYTES_PER_ATOM = 600

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from atomsim.compiler.shapes import count_atoms
-from atomsim.core.memory import free_memory
+from atomsim.core.free_memory import free_memory
 from atomsim.core.model import Indices
 from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
 from atomsim.scene.language.selection import SELECTION_KEYS, parse_selection

@@ -1,48 +1,86 @@
-"""How much memory is free; asked before anything large is allocated."""
+"""The memory of a run: what it has to remember besides positions and velocities, as named arrays of fixed form.
+
+A model says which arrays (its *layout*), so a row of a trajectory has a constant length. Where nothing is remembered
+the layout and the memory are empty, and then neither digests nor files know of them.
+"""
 
 from __future__ import annotations
 
-import os
-import sys
-from pathlib import Path
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
 
-GROUP = Path("/sys/fs/cgroup")
-"""Where Linux tells what a container may take."""
+import numpy as np
+from numpy.typing import NDArray
 
-
-def free_memory() -> int:
-    """Return the bytes that can be allocated without swapping, as the system and its container estimate them."""
-    return min(_free_in_system(), _free_in_group(GROUP))
-
-
-def _free_in_system() -> int:
-    try:
-        for line in Path("/proc/meminfo").read_text().splitlines():
-            if line.startswith("MemAvailable:"):
-                return int(line.split()[1]) * 1024
-    except OSError:
-        pass  # no Linux: count the whole memory, which at least stops the absurd
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+Number: TypeAlias = Literal["float64", "int64", "bool"]
+"""What an array of a memory is made of: a controller's state, a random stream, whether each bond is broken."""
 
 
-def _free_in_group(group: Path) -> int:
-    """Return what a container may still take, beside files kept for speed only; without a limit, any amount."""
-    try:
-        limit, used = (int((group / name).read_text()) for name in ("memory.max", "memory.current"))
-        kept = dict(line.split() for line in (group / "memory.stat").read_text().splitlines())
-        return max(0, limit - used + int(kept["inactive_file"]))
-    except (OSError, ValueError, KeyError):
-        return sys.maxsize
+@dataclass(frozen=True, slots=True)
+class MemoryArray:
+    """The form of one array that a run remembers.
 
-
-def readable_bytes(size: float) -> str:
-    """Write a number of bytes for people.
-
-    >>> readable_bytes(1_500_000), readable_bytes(999)
-    ('1.5 MB', '999 B')
+    Attributes:
+        name: whose it is and what, `controllers.gait.phase`; unique in its layout.
+        number: the type of its numbers.
+        shape: its shape; it never changes.
     """
-    for unit in ("B", "kB", "MB", "GB", "TB"):
-        if size < 1000:
-            return f"{size:.0f} {unit}" if unit == "B" or size >= 100 else f"{size:.1f} {unit}"
-        size /= 1000
-    return f"{size:.0f} PB" if size < 1e6 else f"{size:.0e} PB"
+
+    name: str
+    number: Number
+    shape: tuple[int, ...]
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """The type of its numbers in files and digests: little-endian."""
+        return np.dtype(self.number).newbyteorder("<")
+
+    @property
+    def n_bytes(self) -> int:
+        """How much it takes in a frame."""
+        return math.prod(self.shape) * self.dtype.itemsize
+
+
+Layout: TypeAlias = tuple[MemoryArray, ...]
+"""The arrays of a memory, in their order."""
+
+
+class Memory(Mapping[str, NDArray[Any]]):
+    """What a run remembers at one round: read-only copies of arrays, by name, in the order of the layout.
+
+    Args:
+        arrays: the values; they are copied.
+    """
+
+    __slots__ = ("_arrays",)
+
+    def __init__(self, arrays: Mapping[str, NDArray[Any]] | None = None) -> None:
+        self._arrays = {name: np.array(array) for name, array in (arrays or {}).items()}
+        for array in self._arrays.values():
+            array.setflags(write=False)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other  # as for all records that hold arrays
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    @property
+    def layout(self) -> Layout:
+        """The form of its arrays."""
+        return tuple(MemoryArray(name, array.dtype.name, array.shape) for name, array in self._arrays.items())  # type: ignore[arg-type]
+
+
+EMPTY = Memory()
+"""The memory of a model that remembers nothing."""

@@ -9,6 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from atomsim.core.memory import EMPTY, Layout, Memory
+
 Floats: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.int64]
 
@@ -163,6 +165,7 @@ class Model:
         bonds: one force table per declared `bonds` entry, in order.
         collisions: one force table per declared `collisions` entry, in order.
         forces: external forces in order of declaration.
+        memory: what a run of it remembers besides positions and velocities.
     """
 
     title: str
@@ -172,6 +175,7 @@ class Model:
     bonds: tuple[BondTable, ...]
     collisions: tuple[CollisionTable, ...]
     forces: tuple[ExternalForce, ...]
+    memory: Layout = ()
 
     def group_of(self, atom: int) -> GroupSpan:
         """Return the group that an atom belongs to."""
@@ -186,11 +190,13 @@ class State:
         round_index: iteration rounds done.
         position: atom centres c [length], (n_atoms, 3) float64.
         velocity: v [length per unit of time], (n_atoms, 3) float64.
+        memory: what else is remembered, in the layout of `Model.memory`.
     """
 
     round_index: int
     position: Floats
     velocity: Floats
+    memory: Memory = EMPTY
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -219,22 +225,33 @@ class Frame:
     """A recorded round; a copy that is safe to keep.
 
     Attributes:
-        round_index: iteration rounds done.
-        time: round_index · τ [time].
-        position: atom centres [length], (n_atoms, 3) float64.
-        velocity: [length per unit of time], (n_atoms, 3) float64.
+        state: all there is at that round; to go on from it, nothing else of a run has to be kept.
+        time: round · τ [time].
         digest: the state digest, 64 hexadecimal digits.
         observables: what was measured of it.
     """
 
-    round_index: int
+    state: State
     time: float
-    position: Floats
-    velocity: Floats
     digest: str
     observables: Observables
 
     @property
-    def state(self) -> State:
-        """The state to go on from: nothing else of a run has to be kept."""
-        return State(self.round_index, self.position, self.velocity)
+    def round_index(self) -> int:
+        """Iteration rounds done."""
+        return self.state.round_index
+
+    @property
+    def position(self) -> Floats:
+        """Atom centres [length], (n_atoms, 3) float64."""
+        return self.state.position
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocities [length per unit of time], (n_atoms, 3) float64."""
+        return self.state.velocity
+
+    @property
+    def memory(self) -> Memory:
+        """What else is remembered."""
+        return self.state.memory

@@ -109,11 +109,9 @@ class _Pace:
 def frame_of(model: Model, state: State, observer: Observer) -> Frame:
     """Measure a state and name it by its digest."""
     return Frame(
-        round_index=state.round_index,
+        state=state,
         time=state.round_index * model.time_step,
-        position=state.position,
-        velocity=state.velocity,
-        digest=state_digest(state.position, state.velocity),
+        digest=state_digest(state.position, state.velocity, state.memory),
         observables=observer.observe(state),
     )
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from atomsim.core.memory import Memory
 from atomsim.core.model import Floats, Frame, GroupSpan, atom_name
 
 
@@ -70,7 +73,25 @@ def frame_difference(
                 f"round {one.round_index}: {what} of {differing.size} of {len(apart)} atoms differs, first "
                 f"{atom_name(int(differing[0]), groups)}, most {atom_name(worst, groups)} by {size:.3g}",
             )
+    differing_arrays = _differing_arrays(one.memory, other.memory, tolerance)
+    if differing_arrays:
+        names = ", ".join(f"`{name}`" for name in differing_arrays)
+        return Difference(one.round_index, f"round {one.round_index}: what is remembered as {names} differs")
     return None
+
+
+def _differing_arrays(one: Memory, other: Memory, tolerance: float) -> list[str]:
+    """Return the names of the arrays that only one has, or that differ: real numbers by more than a tolerance."""
+    names = dict.fromkeys((*one, *other))
+    return [name for name in names if not _is_alike(one.get(name), other.get(name), tolerance)]
+
+
+def _is_alike(one: NDArray[Any] | None, other: NDArray[Any] | None, tolerance: float) -> bool:
+    if one is None or other is None or one.dtype != other.dtype or one.shape != other.shape:
+        return False
+    if one.dtype == np.float64:
+        return bool(np.all(_apart(np.atleast_1d(one), np.atleast_1d(other)) <= tolerance))
+    return np.array_equal(one, other)
 
 
 def _apart(left: Floats, right: Floats) -> Floats:

@@ -81,4 +81,6 @@ def _differing(one: Header, other: Header) -> str | None:
         return "bonds"
     if one.time_step != other.time_step:
         return "time steps"
-    return "rounds to record" if one.record_every != other.record_every else None
+    if one.record_every != other.record_every:
+        return "rounds to record"
+    return "memories" if one.memory != other.memory else None

@@ -13,7 +13,7 @@ from atomsim.compiler import compile_scene
 from atomsim.core.backend import Backend, choose
 from atomsim.core.diagnosis.forecast import forecast
 from atomsim.core.diagnosis.tunnelling import SpeedWatch
-from atomsim.core.memory import readable_bytes
+from atomsim.core.free_memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
 from atomsim.errors import BlowUpError, InputError, RunError
@@ -167,7 +167,7 @@ def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
 
 def _require_disk(path: Path, header: Header) -> None:
     """Refuse a run whose frames do not fit on the disk; while the file is built they are there twice."""
-    needed = 2 * trajectory_bytes(header.n_atoms, header.rounds, header.record_every)
+    needed = 2 * trajectory_bytes(header.n_atoms, header.rounds, header.record_every, header.memory)
     folder = path.absolute().parent
     if not folder.is_dir():
         return  # the recorder says so better

@@ -14,13 +14,17 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from atomsim.core.memory import Layout, MemoryArray
 from atomsim.core.model import GroupSpan, Origin
 from atomsim.trajectory.guard import DamageError, odd
 from atomsim.trajectory.header import AtomNumbers, End, Header, Versions
 from atomsim.trajectory.rows import Series
 
-SCHEMA_VERSION = 1
-"""Rises when a file can no longer be read by the program before."""
+PLAIN, REMEMBERING = 1, 2
+"""Versions of the trajectory file; they rise when a file can no longer be read by the program before.
+
+What remembers nothing but positions and velocities is still written in the first.
+"""
 
 Kind: TypeAlias = Literal["text", "texts", "whole", "wholes", "real", "flag"]
 Document: TypeAlias = dict[str, Any]
@@ -53,12 +57,19 @@ _PYTHON_TYPE: Mapping[Kind, Any] = {"text": str, "texts": str, "whole": int, "wh
 _LARGEST_TIME_STEP = 1e150  # times of rounds stay finite
 _MOST_ATOMS = 2**31 - 1
 _MOST_ROUNDS = 2**63 - 1
+_MOST_MEMORY = 2**31 - 1  # bytes: a row has a NumPy type, which holds no more
+
+
+def fields(version: int) -> Mapping[str, Kind]:
+    """Return the names and kinds of the plain values that a version of the file has."""
+    return FIELDS if version == PLAIN else {**FIELDS, "memory": "texts"}
 
 
 def document(header: Header) -> Document:
     """Return everything of a header but its bonds, which are arrays, as plain values."""
+    version = REMEMBERING if header.memory else PLAIN
     values: Document = {
-        "schema_version": SCHEMA_VERSION,
+        "schema_version": version,
         "title": header.title,
         "scene_name": header.scene_name,
         "scene": header.scene,
@@ -78,8 +89,9 @@ def document(header: Header) -> Document:
         "numpy_version": header.versions.numpy,
         "python_version": header.versions.python,
         "platform": header.versions.platform,
+        "memory": [" ".join((array.name, array.number, *map(str, array.shape))) for array in header.memory],
     }
-    return {name: _plain(values[name], kind) for name, kind in FIELDS.items()}
+    return {name: _plain(values[name], kind) for name, kind in fields(version).items()}
 
 
 def _plain(value: Any, kind: Kind) -> Any:
@@ -97,12 +109,12 @@ def storable(text: str) -> str:
 def check_version(values: Mapping[str, Any]) -> None:
     """Refuse a file that a later program wrote in a form unknown to this one."""
     written = values.get("schema_version")
-    if type(written) is int and written > SCHEMA_VERSION:
+    if type(written) is int and written > REMEMBERING:
         raise DamageError(
-            f"written in version {written} of the trajectory file; this atomsim reads version {SCHEMA_VERSION}: "
+            f"written in version {written} of the trajectory file; this atomsim reads version {REMEMBERING}: "
             "a newer atomsim is needed"
         )
-    _require(written == SCHEMA_VERSION, "schema_version")
+    _require(type(written) is int and written in (PLAIN, REMEMBERING), "schema_version")
 
 
 def header_from(values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNumbers) -> Header:
@@ -117,7 +129,7 @@ def header_from(values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNu
         DamageError: a value is missing, of another kind, or makes no sense.
     """
     check_version(values)
-    for name, kind in FIELDS.items():
+    for name, kind in fields(values["schema_version"]).items():
         _require(_is_kind(values.get(name), kind), name)
     _require(0 < values["time_step"] <= _LARGEST_TIME_STEP, "time_step")
     _require(0 < values["n_atoms"] <= _MOST_ATOMS, "n_atoms")
@@ -142,6 +154,7 @@ def header_from(values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNu
         versions=Versions(
             values["program_version"], values["numpy_version"], values["python_version"], values["platform"]
         ),
+        memory=() if values["schema_version"] == PLAIN else _layout(values["memory"]),
     )
 
 
@@ -185,6 +198,15 @@ def _groups(values: Mapping[str, Any], origins: tuple[Origin, ...]) -> tuple[Gro
     _require(all(re.fullmatch("#[0-9a-fA-F]{6}", color) for color in colors), "group_color")
     spans = zip(names, pairwise(limits), colors, origins[: len(names)], strict=True)
     return tuple(GroupSpan(name, start, stop, color, origin) for name, (start, stop), color, origin in spans)
+
+
+def _layout(texts: list[str]) -> Layout:
+    """Read arrays written as `controllers.gait.phase float64 3`; there is one at least."""
+    found = [re.fullmatch(r"([A-Za-z][\w.-]*) (float64|int64|bool)((?: \d{1,10})*)", text, re.ASCII) for text in texts]
+    layout = [MemoryArray(m[1], m[2], tuple(map(int, m[3].split()))) for m in found if m]  # type: ignore[arg-type]
+    _require(0 < len(layout) == len(texts) == len({array.name for array in layout}), "memory")
+    _require(sum(array.n_bytes for array in layout) <= _MOST_MEMORY, "memory")
+    return tuple(layout)
 
 
 def _check_bonds(bond: AtomNumbers, bond_table: AtomNumbers, n_atoms: int, n_origins: int) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from atomsim.core.memory import free_memory
+from atomsim.core.free_memory import free_memory
 from atomsim.errors import AtomsimError, InputError
 
 

@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from atomsim.core.memory import Layout
 from atomsim.core.model import GroupSpan, Model, Origin
 from atomsim.version import __version__
 
@@ -77,6 +78,7 @@ class Header:
         bond: the pairs that are bound, first < second, (n_bonds, 2) int32.
         bond_table: which of `origins` declared each pair, (n_bonds,) int32.
         versions: what the run was made with.
+        memory: what the run remembers besides positions and velocities.
     """
 
     title: str
@@ -93,6 +95,7 @@ class Header:
     bond: AtomNumbers
     bond_table: AtomNumbers
     versions: Versions
+    memory: Layout = ()
 
     @classmethod
     def of(
@@ -137,6 +140,7 @@ class Header:
             bond=np.concatenate([np.empty((0, 2), int), *pairs], dtype="<i4"),
             bond_table=np.concatenate([np.empty(0, int), *rows], dtype="<i4"),
             versions=Versions.here(),
+            memory=model.memory,
         )
 
     def records(self, round_index: int) -> bool:
@@ -149,6 +153,7 @@ def count_frames(rounds: int, record_every: int) -> int:
     return (rounds - 1) // record_every + 2
 
 
-def trajectory_bytes(n_atoms: int, rounds: int, record_every: int) -> int:
+def trajectory_bytes(n_atoms: int, rounds: int, record_every: int, layout: Layout = ()) -> int:
     """Return about how large the trajectory of a run becomes, without compression."""
-    return count_frames(rounds, record_every) * (n_atoms * BYTES_PER_ATOM + BYTES_PER_FRAME)
+    n_bytes = n_atoms * BYTES_PER_ATOM + BYTES_PER_FRAME + sum(array.n_bytes for array in layout)
+    return count_frames(rounds, record_every) * n_bytes

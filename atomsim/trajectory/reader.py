@@ -11,7 +11,7 @@ from typing import Any, Protocol, overload
 
 import numpy as np
 
-from atomsim.core.model import Floats, Frame, Indices
+from atomsim.core.model import Floats, Frame, Indices, State
 from atomsim.errors import InputError, command
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
 from atomsim.trajectory.header import End, Header
@@ -32,7 +32,7 @@ class _Source(Protocol):
     series: Series
     end: End
 
-    def state(self, index: int) -> tuple[Floats, Floats]: ...
+    def state(self, index: int) -> State: ...
 
     def close(self) -> None: ...
 
@@ -187,9 +187,8 @@ class Trajectory(Sequence[Frame]):
 
     def _frame(self, index: int) -> Frame:
         with reading(self._found):
-            position, velocity = self._source.state(index)
-            frame = frame_of(self._source.series[index], position, velocity, self.header.time_step)
-            is_finite = np.isfinite(position).all() and np.isfinite(velocity).all()
+            state = self._source.state(index)
+            is_finite = np.isfinite(state.position).all() and np.isfinite(state.velocity).all()
             if not is_finite and self.end.kind != "blew up":
-                raise DamageError(f"damaged: the state at round {frame.round_index} is not finite")
-            return frame
+                raise DamageError(f"damaged: the state at round {state.round_index} is not finite")
+            return frame_of(self._source.series[index], state, self.header.time_step)

@@ -22,7 +22,7 @@ from atomsim.trajectory.journal.form import SUFFIX, journal_path
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.journal.write import JournalWriter
 from atomsim.trajectory.reader import Trajectory, is_trajectory
-from atomsim.trajectory.rows import fill, frame_of, row_dtype
+from atomsim.trajectory.rows import fill, row_dtype
 
 BLOCK_SECONDS = 1.0
 """A kill loses what was recorded in about this time."""
@@ -112,7 +112,7 @@ class Recorder:
         self.state = state
         self._writer = writer
         self._last_round = -1 if state is None else state.round_index
-        dtype = row_dtype(header.n_atoms)
+        dtype = row_dtype(header.n_atoms, header.memory)
         self._block = np.empty(max(1, BLOCK_BYTES // dtype.itemsize), dtype)
         self._n_waiting = 0
         self._is_open = True
@@ -139,7 +139,7 @@ class Recorder:
 
         Raises:
             RunError: it could not be written; the frames before it are intact.
-            ValueError: its round is not later than the last one, or its number of atoms another.
+            ValueError: its round is not later than the last one, or its number of atoms or its memory another.
         """
         if frame.round_index <= self._last_round:
             raise ValueError(f"round {frame.round_index} recorded after round {self._last_round}")
@@ -253,9 +253,7 @@ def _check_free(path: Path, *, replace: bool) -> None:
 
 def _last_state(journal: Journal) -> State | None:
     last = len(journal.series) - 1
-    if last < 0:
-        return None
-    return frame_of(journal.series[last], *journal.state(last), journal.header.time_step).state
+    return journal.state(last) if last >= 0 else None
 
 
 def _planned(header: Header, rounds: int | None) -> Header:
@@ -274,7 +272,7 @@ def _turn_back(path: Path, rounds: int | None, accept: Callable[[Header], None])
         accept(header)
         writer = JournalWriter.begin(journal_path(path), trajectory.header)
         try:
-            row = np.empty(1, row_dtype(trajectory.header.n_atoms))
+            row = np.empty(1, row_dtype(trajectory.header.n_atoms, trajectory.header.memory))
             for frame in trajectory:
                 fill(row[0], frame)
                 writer.frames(row)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atomsim.core.digest import state_digest
-from atomsim.core.model import Floats, Frame, Observables
+from atomsim.core.memory import EMPTY, Layout, Memory
+from atomsim.core.model import Floats, Frame, Observables, State
 from atomsim.trajectory.guard import DamageError
 
 SERIES = np.dtype(
@@ -31,49 +32,71 @@ OBSERVABLES: tuple[str, ...] = SERIES.names[2:]  # type: ignore[index]
 Series: TypeAlias = NDArray[np.void]
 """An array of dtype `SERIES`, (n_frames,)."""
 Rows: TypeAlias = NDArray[np.void]
-"""An array of dtype `row_dtype(n_atoms)`, (n_frames,)."""
+"""An array of dtype `row_dtype(…)`, (n_frames,)."""
 
 
-def row_dtype(n_atoms: int) -> np.dtype[np.void]:
-    """Return the layout of one frame: its series, then positions, then velocities."""
-    return np.dtype([("series", SERIES), ("position", "<f8", (n_atoms, 3)), ("velocity", "<f8", (n_atoms, 3))])
+def row_dtype(n_atoms: int, layout: Layout = ()) -> np.dtype[np.void]:
+    """Return the layout of one frame: its series, then positions, then velocities, then what is remembered, if any."""
+    parts: list[Any] = [("series", SERIES), ("position", "<f8", (n_atoms, 3)), ("velocity", "<f8", (n_atoms, 3))]
+    memory = [(array.name, array.dtype, array.shape) for array in layout]
+    return np.dtype([*parts, ("memory", memory)] if memory else parts)
 
 
 def fill(row: Any, frame: Frame) -> None:
     """Copy a frame into a row.
 
     Raises:
-        ValueError: the frame has another number of atoms.
+        ValueError: the frame has another number of atoms or another memory.
     """
     if not frame.position.shape == frame.velocity.shape == row["position"].shape:
         raise ValueError(f"a frame of shape {frame.position.shape} in a trajectory of {row['position'].shape}")
     row["series"] = (frame.round_index, frame.digest, *(getattr(frame.observables, name) for name in OBSERVABLES))
     row["position"] = frame.position
     row["velocity"] = frame.velocity
+    if memory_of(row).layout != frame.memory.layout:
+        raise ValueError(f"a frame that remembers {frame.memory.layout} in a trajectory of {row.dtype}")
+    for name, array in frame.memory.items():
+        row["memory"][name] = array
 
 
-def frame_of(series: Any, position: Floats, velocity: Floats, time_step: float) -> Frame:
-    """Return the frame that its parts describe, after checking that they are what was once written.
+def memory_of(row: Any) -> Memory:
+    """Return what a row remembers."""
+    if "memory" not in row.dtype.names:
+        return EMPTY
+    memory = row["memory"]
+    return Memory({name: memory[name] for name in memory.dtype.names})
+
+
+def state_of(series: Any, position: Floats, velocity: Floats, memory: Memory = EMPTY) -> State:
+    """Return the state of a frame, after checking that it is what was once written.
 
     Args:
         series: one element of an array of dtype `SERIES`.
-        position: atom centres [length], (n_atoms, 3) float64; becomes the frame's.
-        velocity: [length per unit of time], (n_atoms, 3) float64; becomes the frame's.
-        time_step: τ [time].
+        position: atom centres [length], (n_atoms, 3) float64; becomes the state's.
+        velocity: [length per unit of time], (n_atoms, 3) float64; becomes the state's.
+        memory: what else was remembered.
 
     Raises:
-        DamageError: position and velocity do not have the digest in the series.
+        DamageError: they do not have the digest in the series.
     """
-    round_index = int(series["round"])
-    digest = state_digest(position, velocity)
-    if series["digest"] != digest.encode():
-        raise DamageError(f"damaged: the state at round {round_index} does not match its digest")
+    state = State(int(series["round"]), position, velocity, memory)
+    if series["digest"] != state_digest(position, velocity, memory).encode():
+        raise DamageError(f"damaged: the state at round {state.round_index} does not match its digest")
+    return state
+
+
+def frame_of(series: Any, state: State, time_step: float) -> Frame:
+    """Return the frame of a state.
+
+    Args:
+        series: one element of an array of dtype `SERIES`.
+        state: what `state_of` returned for it.
+        time_step: τ [time].
+    """
     return Frame(
-        round_index=round_index,
-        time=round_index * time_step,
-        position=position,
-        velocity=velocity,
-        digest=digest,
+        state=state,
+        time=state.round_index * time_step,
+        digest=series["digest"].decode(),
         observables=Observables(
             kinetic_energy=float(series["kinetic_energy"]),
             potential_energy_bonds=float(series["potential_energy_bonds"]),

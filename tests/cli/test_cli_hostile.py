@@ -190,7 +190,7 @@ def test_a_frame_with_a_forged_digest_is_found_by_computing_it_again(cli):
     forged = frames[2].position.copy()
     forged[5, 1] += 1e-12
     digest = state_digest(forged, frames[2].velocity)
-    frames[2] = replace(frames[2], position=forged, digest=digest)
+    frames[2] = replace(frames[2], state=replace(frames[2].state, position=forged), digest=digest)
     Path("out.h5").unlink()
     with Recorder("out.h5", header) as recorder:
         for frame in frames:

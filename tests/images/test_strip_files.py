@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from atomsim.core.model import Frame, Observables
+from atomsim.core.model import Frame, Observables, State
 from atomsim.drawing.camera import View
 from atomsim.drawing.files import is_our_picture
 from atomsim.drawing.layout import Layout
@@ -26,7 +26,8 @@ NOTHING_MEASURED = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
 def frame(round_index, shift=0.0):
     ring = np.arange(12) * (np.pi / 6)
     position = np.stack([3 * np.cos(ring) + shift, 3 * np.sin(ring), 0.1 * ring], axis=1)
-    return Frame(round_index, 0.1 * round_index, position, np.zeros_like(position), "", NOTHING_MEASURED)
+    state = State(round_index, position, np.zeros_like(position))
+    return Frame(state, 0.1 * round_index, "", NOTHING_MEASURED)
 
 
 def row(title="A ring", n_frames=3, **options):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from atomsim.core.digest import state_digest
-from atomsim.core.model import Frame, GroupSpan, Observables, Origin
+from atomsim.core.model import Frame, GroupSpan, Observables, Origin, State
 from atomsim.tasks.compare import first_difference
 
 GROUPS = [
@@ -26,7 +26,7 @@ def frame(round_index=10, position=None, velocity=None):
     for array, numbers in zip(arrays, (position or {}, velocity or {}), strict=True):
         for place, number in numbers.items():
             array[place] = number
-    return Frame(round_index, 0.0, *arrays, state_digest(*arrays), NOTHING_MEASURED)
+    return Frame(State(round_index, *arrays), 0.0, state_digest(*arrays), NOTHING_MEASURED)
 
 
 def said(one, other, tolerance=0.0):

@@ -107,7 +107,7 @@ def _to_go_on(path: Path) -> str:
 def _summarise(outcome: Outcome, seconds: float) -> None:
     """Print what was done and what to type next."""
     from atomsim.cli.terminal.progress import rate
-    from atomsim.core.memory import readable_bytes
+    from atomsim.core.free_memory import readable_bytes
 
     n_rounds = outcome.last_round - outcome.first_round
     size = readable_bytes(outcome.path.stat().st_size)

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from atomsim.core.forces import held_atoms
-from atomsim.core.memory import free_memory
+from atomsim.core.free_memory import free_memory
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
 from atomsim.core.numba_backend.round_kernels import MAKING_COST, advance_rounds
@@ -46,6 +46,7 @@ class NumbaStepper:
         self._n_atoms = model.n_atoms
         self._time_step = model.time_step
         self._round_index = state.round_index
+        self._memory = state.memory
         here = self._padded(state.position)
         self._motion = Motion(here, here.copy(), self._padded(state.velocity), np.zeros_like(here))
         forces = in_order(model.forces)
@@ -74,8 +75,10 @@ class NumbaStepper:
     def state(self) -> State:
         """Return a copy of the present state."""
         atoms = slice(self._margin, self._margin + self._n_atoms)
-        position = np.ascontiguousarray(self._motion.here[:, atoms].T)
-        return State(self._round_index, position, np.ascontiguousarray(self._motion.velocity[:, atoms].T))
+        position, velocity = (
+            np.ascontiguousarray(array[:, atoms].T) for array in (self._motion.here, self._motion.velocity)
+        )
+        return State(self._round_index, position, velocity, self._memory)
 
     def _padded(self, vectors: Floats) -> Floats:
         """Return (n_atoms, 3) as (3, n_slots)."""

@@ -33,6 +33,7 @@ class NumpyStepper:
         self._round_index = state.round_index
         self._position = np.array(state.position.T, order="C")  # a copy even of a single atom
         self._velocity = np.array(state.velocity.T, order="C")
+        self._memory = state.memory
         self._impulse = np.empty_like(self._position)
         self._step = np.empty_like(self._position)
 
@@ -45,7 +46,7 @@ class NumpyStepper:
     def state(self) -> State:
         """Return a copy of the present state."""
         position, velocity = (np.array(array.T, order="C") for array in (self._position, self._velocity))
-        return State(self._round_index, position, velocity)
+        return State(self._round_index, position, velocity, self._memory)
 
     def _advance_one_round(self) -> None:
         """j(n) = Σ forces;  v(n+1) = v(n) + j(n);  c(n+1) = c(n) + τ · v(n+1)."""

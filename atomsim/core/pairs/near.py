@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from atomsim.core.memory import free_memory
+from atomsim.core.free_memory import free_memory
 from atomsim.core.model import Floats, Indices
 
 TILE = 1 << 15

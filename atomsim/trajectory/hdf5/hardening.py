@@ -45,13 +45,20 @@ class PlainFile:
             DamageError: it is not there, or not that.
             MemoryError: it does not fit.
         """
+        dataset = self.in_one_run(path, dtype, shape)
+        check_room(dataset.nbytes)
+        return np.asarray(dataset[()])
+
+    def in_one_run(self, path: str, dtype: str | None, shape: tuple[int | None, ...]) -> Dataset:
+        """Return a dataset that is stored in one run of bytes, not read yet; like `array`."""
         dataset = self._dataset(path)
         _check_form(path, dataset, dtype, shape)
         plan = dataset.id.get_create_plist()
         if plan.get_layout() != h5py.h5d.CONTIGUOUS or dataset.id.get_storage_size() != dataset.nbytes:
             raise odd(f"`{path}` is stored in another way")
-        self._check_size(path, dataset.nbytes)
-        return np.asarray(dataset[()])
+        if dataset.nbytes > self._size:
+            raise DamageError(f"damaged, or made to do damage (`{path}` claims to be larger than the file)")
+        return dataset
 
     def text(self, path: str) -> str:
         """Return a dataset that is one text; like `array`."""
@@ -78,11 +85,6 @@ class PlainFile:
         if filters not in ((), _SHUFFLE_AND_GZIP):
             raise odd(f"`{path}` is compressed in another way")
         return Chunks(path, dataset.id, chunk_shape, bool(filters), self._size)
-
-    def _check_size(self, path: str, n_bytes: int) -> None:
-        if n_bytes > self._size:
-            raise DamageError(f"damaged, or made to do damage (`{path}` claims to be larger than the file)")
-        check_room(n_bytes)
 
     def _dataset(self, path: str) -> Dataset:
         here = self._file

@@ -13,6 +13,7 @@ NUMBERS = {"whole": "<i8", "wholes": "<i8", "real": "<f8", "flag": "?"}
 """Types of the plain values of the header that are not texts."""
 
 PARAMETERS = "parameters/atomsim"
+MEMORY = f"{PARAMETERS}/memory_value"
 PARTICLES = "particles/trajectory"
 
 _CHUNK_BYTES = 1 << 20

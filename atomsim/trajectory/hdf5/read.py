@@ -9,13 +9,14 @@ from typing import Any
 import h5py
 import numpy as np
 
-from atomsim.core.model import Floats
-from atomsim.trajectory.document import FIELDS, Kind, check_version, contents_digest, end_from, header_from
+from atomsim.core.memory import Memory
+from atomsim.core.model import State
+from atomsim.trajectory.document import Kind, check_version, contents_digest, end_from, fields, header_from
 from atomsim.trajectory.guard import DamageError, check_room, odd
 from atomsim.trajectory.hdf5.hardening import PlainFile
-from atomsim.trajectory.hdf5.layout import NUMBERS, PARAMETERS, PARTICLES, chunk_rows
+from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
 from atomsim.trajectory.header import Header
-from atomsim.trajectory.rows import OBSERVABLES, SERIES, Series, check_rounds
+from atomsim.trajectory.rows import OBSERVABLES, SERIES, Series, check_rounds, state_of
 
 
 class Finished:
@@ -44,9 +45,10 @@ class Finished:
         """Close the file."""
         self._file.close()
 
-    def state(self, index: int) -> tuple[Floats, Floats]:
-        """Return position and velocity of a frame, both (n_atoms, 3)."""
-        return self._position.row(index), self._velocity.row(index)
+    def state(self, index: int) -> State:
+        """Return the state of a frame, checked against its digest."""
+        memory = Memory({name: values[index] for name, values in self._memory.items()})
+        return state_of(self.series[index], self._position.row(index), self._velocity.row(index), memory)
 
     def _read(self, file: PlainFile) -> None:
         self.header = _header(file)
@@ -59,6 +61,11 @@ class Finished:
         shape = (n_frames, n_atoms, 3)
         self._position = file.chunks(f"{PARTICLES}/position/value", shape, rows)
         self._velocity = file.chunks(f"{PARTICLES}/velocity/value", shape, rows)
+        self._memory = {
+            array.name: file.in_one_run(f"{MEMORY}/{array.name}", array.dtype.str, (n_frames, *array.shape))
+            for array in self.header.memory
+        }
+        check_room(sum(array.n_bytes for array in self.header.memory))
         if not self._position.compressed == self._velocity.compressed == self.header.compress:
             raise odd("it is compressed in another way")
 
@@ -81,7 +88,7 @@ def _opened(path: Path) -> Any:
 def _header(file: PlainFile) -> Header:
     values = {"schema_version": _value(file, "schema_version", "whole")}
     check_version(values)
-    values = {name: _value(file, name, kind) for name, kind in FIELDS.items()}
+    values = {name: _value(file, name, kind) for name, kind in fields(values["schema_version"]).items()}
     if file.text(f"{PARAMETERS}/scene_sha256") != hashlib.sha256(values["scene"].encode()).hexdigest():
         raise DamageError("damaged: its scene does not match its digest")
     bond = file.array("connectivity/bonds", "<i4", (None, 2))

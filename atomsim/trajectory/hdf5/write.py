@@ -15,8 +15,8 @@ import numpy as np
 
 from atomsim import disk
 from atomsim.errors import RunError, command
-from atomsim.trajectory.document import FIELDS, contents_digest, document, storable
-from atomsim.trajectory.hdf5.layout import NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
+from atomsim.trajectory.document import contents_digest, document, fields, storable
+from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
 from atomsim.trajectory.hdf5.sink import Sink
 from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal.form import journal_path
@@ -75,7 +75,7 @@ def _write(journal: Journal, temporary: Path) -> None:
             _write_frames(journal, file, between_pieces)
             _write_observables(journal, file)
             _write_bonds(journal, file)
-            _write_parameters(journal, file.create_group(PARAMETERS))
+            _write_parameters(journal, file.require_group(PARAMETERS))
         sink.sync()
 
 
@@ -102,10 +102,18 @@ def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[], No
     _share_time(file, velocity)
     rows = chunk_rows(len(series), header.n_atoms)
     values = {name: _create_value(atoms[name], name, journal, rows) for name in ("position", "velocity")}
+    memory = {
+        array.name: file.create_dataset(
+            f"{MEMORY}/{array.name}", (len(series), *array.shape), array.dtype, track_times=False
+        )
+        for array in header.memory
+    }
     for start in range(0, len(series), rows):
         piece = journal.rows(start, min(start + rows, len(series)))
         for name, value in values.items():
             value[start : start + len(piece)] = piece[name]
+        for name, value in memory.items():
+            value[start : start + len(piece)] = piece["memory"][name]
         between_pieces()
     species = [np.full(group.stop - group.start, i, "<i4") for i, group in enumerate(header.groups)]
     atoms["mass"] = np.ones(header.n_atoms)
@@ -150,7 +158,7 @@ def _write_bonds(journal: Journal, file: Group) -> None:
 def _write_parameters(journal: Journal, group: Group) -> None:
     header, end = journal.header, journal.end
     values = document(header)
-    for name, kind in FIELDS.items():
+    for name, kind in fields(values["schema_version"]).items():
         group[name] = _texts(values[name]) if kind in ("text", "texts") else np.array(values[name], NUMBERS[kind])
     group["scene_sha256"] = _texts(hashlib.sha256(values["scene"].encode()).hexdigest())
     group["bond_table"] = header.bond_table

@@ -13,12 +13,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from atomsim.core.model import Floats
+from atomsim.core.model import State
 from atomsim.trajectory.document import check_version, end_from, header_from
 from atomsim.trajectory.guard import DamageError, check_room
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import BONDS, END, FRAMES, GO_ON, HEAD, PREFIX, checksum_start
-from atomsim.trajectory.rows import SERIES, Rows, Series, check_rounds, row_dtype
+from atomsim.trajectory.rows import SERIES, Rows, Series, check_rounds, memory_of, row_dtype, state_of
 
 Record: TypeAlias = tuple[bytes, int, int]
 """Kind of a record, then where its payload starts and how long that is [bytes]."""
@@ -71,10 +71,10 @@ class Journal:
             self._read_into(rows[begin:end].view("u1").data, int(offsets[begin]))
         return rows
 
-    def state(self, index: int) -> tuple[Floats, Floats]:
-        """Return position and velocity of a frame, both (n_atoms, 3)."""
+    def state(self, index: int) -> State:
+        """Return the state of a frame, checked against its digest."""
         row = self.rows(index, index + 1)[0]
-        return row["position"].copy(), row["velocity"].copy()
+        return state_of(self.series[index], row["position"].copy(), row["velocity"].copy(), memory_of(row))
 
     def _read_header(self, records: Iterator[Record]) -> None:
         head = self._payload_of(HEAD, next(records, None))
@@ -84,7 +84,7 @@ class Journal:
         check_version(values)
         bonds = np.frombuffer(self._payload_of(BONDS, next(records, None)), "<i4").reshape(-1, 3)
         self.header: Header = header_from(values, bonds[:, :2], bonds[:, 2])
-        self._dtype = row_dtype(self.header.n_atoms)
+        self._dtype = row_dtype(self.header.n_atoms, self.header.memory)
         check_room(self._dtype.itemsize)
 
     def _read_rest(self, records: Iterator[Record]) -> None:

@@ -46,7 +46,7 @@ def frame(round_index: int, n_atoms: int = 7) -> Frame:
     position, velocity = random.normal(size=(2, n_atoms, 3))
     observables = Observables(*random.normal(size=3).tolist(), *random.normal(size=(2, 3)), round_index % 5)
     digest = state_digest(position, velocity)
-    return Frame(round_index, round_index * TIME_STEP, position, velocity, digest, observables)
+    return Frame(State(round_index, position, velocity), round_index * TIME_STEP, digest, observables)
 
 
 def go_on(recorder: Recorder, *, stop_after: int | None = None, finish: bool = True) -> None:

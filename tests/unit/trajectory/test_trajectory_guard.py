@@ -203,8 +203,8 @@ HOSTILE: dict[str, tuple[Callable[[h5py.File], None], str]] = {
         "damaged: the times of its frames are not those of its rounds",
     ),
     "a later version": (
-        write_value("parameters/atomsim/schema_version", 2),
-        "written in version 2 of the trajectory file; this atomsim reads version 1: a newer atomsim is needed",
+        write_value("parameters/atomsim/schema_version", 3),
+        "written in version 3 of the trajectory file; this atomsim reads version 2: a newer atomsim is needed",
     ),
     "nothing of ours": (
         keep_only_text,

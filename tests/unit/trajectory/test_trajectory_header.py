@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sample_run import SCENE, header, model
 
-from atomsim.trajectory.document import FIELDS, SCHEMA_VERSION, check_version, document, end_from, header_from
+from atomsim.trajectory.document import FIELDS, REMEMBERING, check_version, document, end_from, header_from
 from atomsim.trajectory.guard import DamageError
 from atomsim.trajectory.header import count_frames
 
@@ -115,11 +115,11 @@ def test_bonds_of_a_declaration_that_does_not_exist_are_refused(table: list[int]
 
 
 def test_a_later_version_asks_for_a_newer_program() -> None:
-    later = SCHEMA_VERSION + 1
+    later = REMEMBERING + 1
     with pytest.raises(DamageError) as caught:
         check_version({"schema_version": later})
     assert str(caught.value) == (
-        f"written in version {later} of the trajectory file; this atomsim reads version {SCHEMA_VERSION}: "
+        f"written in version {later} of the trajectory file; this atomsim reads version {REMEMBERING}: "
         "a newer atomsim is needed"
     )
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from atomsim.core import memory
+from atomsim.core import free_memory as memory
 
 
 def write_group(folder: Path, limit: str, used: str, kept: str) -> None:
