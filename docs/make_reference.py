@@ -14,10 +14,10 @@ from typing import Any
 import typer
 
 from atomsim.cli.app import app
-from atomsim.scene import language
-from atomsim.scene.field_docs import discriminator
+from atomsim.scene.declarations import declarations, sections
+from atomsim.scene.field_docs import FieldDoc, about, field_docs
 from atomsim.scene.language import Declaration
-from atomsim.scene.schema import FieldDoc, field_docs, schema_text
+from atomsim.scene.schema import schema_text
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = ROOT / "docs" / "examples"
@@ -28,10 +28,6 @@ RECIPE = """\
 # yaml-language-server: $schema=../../atomsim/scene/scene.schema.json
 # A recipe; docs/recipes.md tells what it shows.
 """
-
-SHAPES = ("StringGroup", "RingGroup", "PolygonGroup", "PlaneGroup", "BlockGroup", "AtomsGroup")
-RULES = ("AllPairsBonds", "NeighbourBonds", "DistanceThresholdBonds", "ListedBonds")
-KINDS = ("Damping", "Gravity", "Push", "Hold", "Oscillate", "Torque", "Tether")
 
 SCENE_INTRODUCTION = """\
 # Scene reference
@@ -138,15 +134,15 @@ def _scene_reference() -> Iterator[str]:
     yield _examples("selections")
     yield from _section("### Jitter", ["Jitter"], docs)
     yield _examples("jitter")
-    yield from _family("## Groups", "GroupBase", SHAPES, docs)
+    yield from _family("## Groups", "groups", docs)
     yield from _section("### Turning a group: `rotate`", ["Rotation"], docs)
     yield _examples("rotate")
     yield from _section("### Spinning a group: `spin`", ["Spin"], docs)
     yield _examples("spin")
-    yield from _family("## Bonds", "BondBase", RULES, docs)
+    yield from _family("## Bonds", "bonds", docs)
     yield from _section("## Collisions", ["Collisions"], docs)
     yield _examples("within", "between", "among")
-    yield from _family("## Forces", "ForceBase", KINDS, docs)
+    yield from _family("## Forces", "forces", docs)
     yield from _section("## Pictures: `render`", ["Render"], docs)
     yield from _section("### Camera", ["Camera"], docs)
     yield _examples("render")
@@ -156,37 +152,30 @@ def _section(heading: str, names: Iterable[str], docs: dict[str, dict[str, Field
     """Yield a heading, and what the docstrings say of declarations."""
     yield heading + "\n"
     for name in names:
-        yield inspect.cleandoc(getattr(language, name).__doc__) + "\n"
+        yield about(declarations()[name]) + "\n"
         yield _fields(docs[name])
 
 
-def _family(heading: str, base: str, names: Iterable[str], docs: dict[str, dict[str, FieldDoc]]) -> Iterator[str]:
-    """Yield the keys that all members of a family share, then each member with its own keys and an example."""
-    members = {name: getattr(language, name) for name in names}
-    first = next(iter(members))
-    shared = set(_annotated(next(class_ for class_ in members[first].__mro__ if class_.__name__ == base)))
+def _family(heading: str, name: str, docs: dict[str, dict[str, FieldDoc]]) -> Iterator[str]:
+    """Yield the keys that all declarations of a section share, then each of them with its own keys and an example."""
+    section = sections()[name]
+    first = section.declarations[0]
+    base = first.__mro__[first.__mro__.index(Declaration) - 1]
+    shared = set(_annotated(base))
     yield heading + "\n"
-    yield f"Each has a `{_word(members[first])[0]}`, and may have:\n"
-    yield _fields({key: doc for key, doc in docs[first].items() if key in shared})
-    for name, class_ in members.items():
-        word = _word(class_)[1]
+    yield f"Each has a `{section.key}`, and may have:\n"
+    yield _fields({key: doc for key, doc in docs[first.__name__].items() if key in shared})
+    for word, declaration in section.words.items():
         yield f"### `{word}`\n"
-        yield inspect.cleandoc(class_.__doc__) + "\n"
-        inherited = shared - set(_annotated(class_))
-        yield _fields({key: doc for key, doc in docs[name].items() if key not in inherited})
+        yield about(declaration) + "\n"
+        inherited = shared - set(_annotated(declaration))
+        yield _fields({key: doc for key, doc in docs[declaration.__name__].items() if key not in inherited})
         yield _examples(word)
 
 
-def _annotated(class_: type[Declaration]) -> list[str]:
+def _annotated(class_: type) -> list[str]:
     """Return the fields that a class itself declares."""
     return list(inspect.get_annotations(class_))
-
-
-def _word(class_: type[Declaration]) -> tuple[str, str]:
-    """Return the key and the word that choose a declaration: ("shape", "ring")."""
-    chosen = discriminator(class_)
-    assert chosen is not None, f"{class_.__name__} is not chosen by a word"
-    return chosen
 
 
 def _fields(fields: dict[str, FieldDoc]) -> str:

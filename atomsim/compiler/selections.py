@@ -11,8 +11,9 @@ import numpy as np
 from atomsim.compiler.shapes import count_atoms
 from atomsim.core.free_memory import free_memory
 from atomsim.core.model import Indices
+from atomsim.scene.declarations import selecting_keys
 from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
-from atomsim.scene.language.selection import SELECTION_KEYS, parse_selection
+from atomsim.scene.language.selection import parse_selection
 from atomsim.scene.source import KeyPath
 
 LARGE = 1 << 26
@@ -158,7 +159,7 @@ def _along_axis(axis: int | slice, count: int, expression: str, group: str) -> I
 
 def place_of(expression: str, declaration: Declaration) -> KeyPath:
     """Return where in a declaration a selection was written, as a path inside it; empty if nowhere."""
-    places = (_place_in(getattr(declaration, key, None), expression, (key,)) for key in SELECTION_KEYS)
+    places = (_place_in(getattr(declaration, key), expression, (key,)) for key in selecting_keys(type(declaration)))
     return next(filter(None, places), ())
 
 

@@ -1,16 +1,63 @@
-"""The strings below the fields of the language, and which declaration a path leads to; knows no wording of its own."""
+"""What is known of the keys of declarations: the strings below them, their types in words and their defaults."""
 
 from __future__ import annotations
 
 import ast
 import functools
 import inspect
+import json
 import sys
 from collections.abc import Iterator
-from typing import Annotated, Any, TypeGuard, get_args, get_origin
+from dataclasses import dataclass
 
-from atomsim.scene.language import Declaration, Scene
-from atomsim.scene.source import KeyPath
+from atomsim.scene.declarations import declarations
+from atomsim.scene.language import Declaration
+from atomsim.scene.value_schema import Schema, in_words, value_schema
+
+
+@dataclass(frozen=True, slots=True)
+class FieldDoc:
+    """What is known of a field: the type in words, the default as YAML (None: it is required), the string below it."""
+
+    type: str
+    default: str | None
+    description: str
+
+
+def field_docs() -> dict[str, dict[str, FieldDoc]]:
+    """Return declaration (class name) → field → what is known of it, in the order of the language."""
+    return {
+        name: {key: field_doc(declaration, key) for key in descriptions(declaration)}
+        for name, declaration in declarations().items()
+    }
+
+
+def field_doc(declaration: type[Declaration], key: str) -> FieldDoc:
+    """Return what is known of the value under one key of a declaration."""
+    return FieldDoc(form(declaration, key), _default_in_words(declaration, key), descriptions(declaration)[key])
+
+
+def form(declaration: type[Declaration], key: str) -> str:
+    """Return how the value under a key is written: `[x, y, z]`."""
+    return in_words(value_schema(declaration, key))
+
+
+def default(declaration: type[Declaration], key: str) -> Schema:
+    """Return what a schema says of the default of a key: nothing if there is none, or none that can be written."""
+    field = declaration.model_fields[key]
+    if field.is_required() or field.default_factory is not None or field.default is None:
+        return {}
+    return {"default": json.loads(json.dumps(field.default))}
+
+
+def _default_in_words(declaration: type[Declaration], key: str) -> str | None:
+    """Return a default as the user would write it, empty if nothing stands for it."""
+    if declaration.model_fields[key].is_required():
+        return None
+    value = default(declaration, key).get("default", "")
+    if value in ([], ""):
+        return ""
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 @functools.cache
@@ -22,16 +69,21 @@ def descriptions(declaration: type[Declaration]) -> dict[str, str]:
     found: dict[str, str] = {}
     for ancestor in declaration.__mro__:
         if issubclass(ancestor, Declaration):
-            inherited = _in_module(ancestor.__module__).get(ancestor.__name__, {})
+            inherited = dict(_documented(_in_module(ancestor.__module__)[ancestor.__name__]))
             found |= {field: text for field, text in inherited.items() if field not in found}
     return found
 
 
+def about(declaration: type[Declaration]) -> str:
+    """Return what a declaration says of itself: its docstring, which `python -OO` takes from the class."""
+    return ast.get_docstring(_in_module(declaration.__module__)[declaration.__name__]) or ""
+
+
 @functools.cache
-def _in_module(module: str) -> dict[str, dict[str, str]]:
-    """Return class → field → the string below it."""
+def _in_module(module: str) -> dict[str, ast.ClassDef]:
+    """Return the classes of a module by name."""
     tree = ast.parse(inspect.getsource(sys.modules[module]))
-    return {node.name: dict(_documented(node)) for node in tree.body if isinstance(node, ast.ClassDef)}
+    return {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
 
 
 def _documented(class_: ast.ClassDef) -> Iterator[tuple[str, str]]:
@@ -39,91 +91,3 @@ def _documented(class_: ast.ClassDef) -> Iterator[tuple[str, str]]:
         match field, below:
             case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
                 yield name, inspect.cleandoc(text)
-
-
-def discriminator(declaration: type[Declaration]) -> tuple[str, str] | None:
-    """Return the key and the word by which a declaration is chosen among its kind: ("shape", "ring")."""
-    for key in ("shape", "rule", "kind"):
-        if key in declaration.model_fields:
-            return key, str(get_args(declaration.model_fields[key].annotation)[0])
-    return None
-
-
-def declared_in(section: str) -> list[type[Declaration]]:
-    """Return what may be declared by name in a section; nothing for a section without names."""
-    annotation = Scene.model_fields[section].annotation
-    return _options(get_args(annotation)[1], None) if get_origin(annotation) is dict else []
-
-
-def words_in(section: str) -> dict[str, list[str]]:
-    """Return the words that choose a declaration in a section (shapes, rules or kinds), each with its keys."""
-    chosen_by = {discriminator(declaration): list(descriptions(declaration)) for declaration in declared_in(section)}
-    return {chosen[1]: keys for chosen, keys in chosen_by.items() if chosen is not None}
-
-
-def is_mapping(declaration: type[Declaration], key: str) -> bool:
-    """Tell whether further keys or names stand below a key of a declaration, and nothing else may."""
-    options = _options(declaration.model_fields[key].annotation, [])
-    return any(get_origin(option) is dict or _is_declaration(option) for option in options)
-
-
-def declaration_at(path: KeyPath, data: Any) -> type[Declaration] | None:
-    """Return the declaration that a path leads to, as far as the data tell; None for lists, mappings and scalars.
-
-    Args:
-        path: keys and indices from the top of the scene.
-        data: the plain data of the scene.
-    """
-    annotation: Any = Scene
-    for part in path:
-        annotation = _inside(annotation, data, part)
-        data = _item(data, part)
-    return _chosen(annotation, data)
-
-
-def _inside(annotation: Any, data: Any, part: str | int) -> Any:
-    """Return the annotation of what stands under a key or an index."""
-    declaration = _chosen(annotation, data)
-    if declaration is not None and part in declaration.model_fields:
-        return declaration.model_fields[str(part)].annotation
-    for option in _options(annotation, data):
-        if get_origin(option) is dict:
-            return get_args(option)[1]
-        if get_origin(option) is tuple and isinstance(part, int):
-            return get_args(option)[0]
-    return None
-
-
-def _chosen(annotation: Any, data: Any) -> type[Declaration] | None:
-    """Return the declaration among the options that the data name, or the only one."""
-    options = _options(annotation, data)
-    classes = [option for option in options if _is_declaration(option)]
-    if len(classes) == 1:
-        return classes[0]
-    for declaration in classes:
-        key, word = discriminator(declaration) or ("", "")
-        if _item(data, key) == word:
-            return declaration
-    return None
-
-
-def _is_declaration(option: Any) -> TypeGuard[type[Declaration]]:
-    return isinstance(option, type) and issubclass(option, Declaration)
-
-
-def _options(annotation: Any, data: Any) -> list[Any]:
-    """Return the alternatives of an annotation, without `Annotated` and unions; one item may stand for a list."""
-    is_lone = get_origin(annotation) is tuple and not isinstance(data, list)
-    if get_origin(annotation) is Annotated or is_lone:
-        return _options(get_args(annotation)[0], data)
-    if get_origin(annotation) in (dict, tuple) or isinstance(annotation, type):
-        return [annotation]
-    return [option for inner in get_args(annotation) for option in _options(inner, data)]
-
-
-def _item(data: Any, part: str | int) -> Any:
-    if isinstance(data, dict):
-        return data.get(part)
-    if isinstance(data, list) and isinstance(part, int) and part < len(data):
-        return data[part]
-    return None

@@ -97,8 +97,8 @@ class _Setting:
 
     def _require_mapping(self, entries: dict[str, Node], path: KeyPath) -> None:
         """Refuse to go on into what is not written, unless the language has a mapping there."""
-        from atomsim.scene.field_docs import declaration_at, descriptions, is_mapping  # only a few settings
-        from atomsim.scene.schema import field_docs  # need them
+        from atomsim.scene.declarations import declaration_at, is_mapping  # only a few settings
+        from atomsim.scene.field_docs import descriptions, form  # need them
 
         key = str(path[-1])
         declaration = declaration_at(path[:-1], self._root.plain())
@@ -109,8 +109,8 @@ class _Setting:
         if key not in declaration.model_fields:
             raise self._not_there(path, meant(key, descriptions(declaration), "the keys here are"))
         if not is_mapping(declaration, key):
-            form = field_docs()[declaration.__name__][key].type
-            raise self._refused(path, f"`{key}` is not written; set it whole, as `{dotted(path)}={form}`")
+            whole = f"{dotted(path)}={form(declaration, key)}"
+            raise self._refused(path, f"`{key}` is not written; set it whole, as `{whole}`")
 
     def _index(self, key: str, n_items: int, done: KeyPath) -> int:
         if key.isascii() and key.isdecimal() and len(key) < 10 and int(key) < n_items:

@@ -1,32 +1,18 @@
-"""The scene language as JSON Schema and as a table of its fields; both come from the data model and its docstrings."""
+"""The scene language as JSON Schema: all declarations, and the changes to them that a scene which extends may make."""
 
 from __future__ import annotations
 
 import copy
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
-from pydantic.json_schema import GenerateJsonSchema
-
-from atomsim.scene import language
-from atomsim.scene.field_docs import descriptions
-from atomsim.scene.language import Declaration, Scene
-from atomsim.scene.mistakes.wording import either
-
-Schema: TypeAlias = dict[str, Any]
+from atomsim.scene.declarations import declarations
+from atomsim.scene.field_docs import about, default, descriptions
+from atomsim.scene.language import Declaration
+from atomsim.scene.value_schema import Schema, value_schema
 
 _EXTENDS = "The scene file to lay this one over: mappings merge by key, everything else replaces, null deletes."
-
-
-@dataclass(frozen=True, slots=True)
-class FieldDoc:
-    """What is known of a field: the type in words, the default as YAML (None: it is required), the string below it."""
-
-    type: str
-    default: str | None
-    description: str
 
 
 def schema() -> Schema:
@@ -35,9 +21,8 @@ def schema() -> Schema:
     A scene that `extends` another is checked against a second set of definitions, `…Change`, in which every key may be
     left out; null is allowed wherever it means that a key is not there.
     """
-    complete = _definitions()
-    for name, definition in complete.items():
-        _describe(definition, getattr(language, name))
+    complete = {name: _definition(declaration) for name, declaration in declarations().items()}
+    for definition in complete.values():
         _allow_nulls(definition)
     changes = {f"{name}Change": _as_change(definition) for name, definition in complete.items()}
     complete["Scene"]["properties"]["extends"] = {"type": "null", "description": _EXTENDS}
@@ -57,60 +42,25 @@ def schema_text() -> str:
     return _laid_out(schema(), "") + "\n"
 
 
-def field_docs() -> dict[str, dict[str, FieldDoc]]:
-    """Return declaration (class name) → field → what is known of it, in the order of the language."""
-    definitions = _definitions()
-    return {name: _fields(getattr(language, name), definitions) for name in definitions}
-
-
-def _fields(declaration: type[Declaration], definitions: dict[str, Schema]) -> dict[str, FieldDoc]:
-    definition = definitions[declaration.__name__]
+def _definition(declaration: type[Declaration]) -> Schema:
+    """Return the schema of a declaration."""
+    fields, described = declaration.model_fields, descriptions(declaration)
     return {
-        key: FieldDoc(
-            type=_in_words(definition["properties"][key], definitions),
-            default=None if key in definition.get("required", ()) else _default(definition["properties"][key]),
-            description=description,
-        )
-        for key, description in descriptions(declaration).items()
+        "description": about(declaration),
+        "type": "object",
+        "properties": {
+            key: value_schema(declaration, key) | default(declaration, key) | {"description": described[key]}
+            for key in fields
+        },
+        "required": [key for key, field in fields.items() if field.is_required()],
+        "additionalProperties": False,
     }
-
-
-class _Generator(GenerateJsonSchema):
-    """Pydantic's generator without the titles that repeat the name of each key."""
-
-    def field_title_should_be_set(self, schema: Any) -> bool:
-        return False
-
-
-def _definitions() -> dict[str, Schema]:
-    """Return the schema of each declaration by class name, the scene itself last."""
-    scene = Scene.model_json_schema(schema_generator=_Generator)
-    definitions: dict[str, Schema] = scene.pop("$defs")
-    definitions["Scene"] = scene
-    for definition in definitions.values():
-        del definition["title"]
-        _everywhere(definition, _tidy)
-    return definitions
-
-
-def _tidy(value: Schema) -> None:
-    """Leave out what says nothing to a validator, and refuse names that are none."""
-    value.pop("discriminator", None)
-    if "default" in value and value["default"] is None:
-        del value["default"]
-    if "patternProperties" in value:
-        value["additionalProperties"] = False
-
-
-def _describe(definition: Schema, declaration: type[Declaration]) -> None:
-    for key, description in descriptions(declaration).items():
-        definition["properties"][key]["description"] = description
 
 
 def _allow_nulls(definition: Schema) -> None:
     """Allow null for every key that may be left out, and for every name."""
     for key, value in definition["properties"].items():
-        if key not in definition.get("required", ()):
+        if key not in definition["required"]:
             definition["properties"][key] = _nullable(value)
         for pattern, named in value.get("patternProperties", {}).items():
             value["patternProperties"][pattern] = _nullable(named)
@@ -129,7 +79,7 @@ def _nullable(value: Schema) -> Schema:
 def _as_change(definition: Schema) -> Schema:
     """Return the definition of the same thing where every key may be left out."""
     change = copy.deepcopy(definition)
-    change.pop("required", None)
+    change["required"] = []
     _allow_nulls(change)
     change["additionalProperties"] = {"type": "null"}  # what is deleted may be a key of another shape
 
@@ -138,6 +88,7 @@ def _as_change(definition: Schema) -> Schema:
             value["$ref"] += "Change"
         if "oneOf" in value:
             value["anyOf"] = value.pop("oneOf")
+        value.pop("minProperties", None)  # the names may be in what is extended
 
     _everywhere(change, loosen)
     return change
@@ -163,39 +114,3 @@ def _laid_out(value: Any, indent: str) -> str:
         return "[\n" + ",\n".join(deeper + item for item in items) + f"\n{indent}]"
     items = [f"{json.dumps(key)}: {_laid_out(item, deeper)}" for key, item in value.items()]
     return "{\n" + ",\n".join(deeper + item for item in items) + f"\n{indent}}}"
-
-
-def _default(value: Schema) -> str:
-    """Return a default as the user would write it, empty if nothing stands for it."""
-    default = value.get("default")
-    if default is None or default in ([], ""):
-        return ""
-    return default if isinstance(default, str) else json.dumps(default)
-
-
-def _in_words(value: Schema, definitions: dict[str, Schema]) -> str:
-    """Return the type that a schema describes."""
-    if "title" in value:
-        return str(value["title"])
-    if "$ref" in value:
-        keys = definitions[value["$ref"].rpartition("/")[2]]["properties"]
-        return f"{{{', '.join(keys)}}}"
-    if "const" in value or "enum" in value:
-        return either(str(choice) for choice in value.get("enum") or [value["const"]])
-    if "anyOf" in value:
-        return either(_in_words(option, definitions) for option in value["anyOf"] if option != {"type": "null"})
-    if "prefixItems" in value:
-        return f"[{', '.join(_in_words(item, definitions) for item in value['prefixItems'])}]"
-    if value["type"] == "array":
-        return f"[{_in_words(value['items'], definitions)}, …]"
-    if value["type"] == "object":
-        return "mapping by name"
-    return _scalar_in_words(value)
-
-
-def _scalar_in_words(value: Schema) -> str:
-    word = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true or false"}[value["type"]]
-    bounds = (("exclusiveMinimum", ">"), ("minimum", "≥"))
-    lower = "".join(f" {sign} {value[key]:g}" for key, sign in bounds if key in value)
-    upper = f" and ≤ {value['maximum']:g}" if value["type"] == "number" and "maximum" in value else ""
-    return word + lower + upper

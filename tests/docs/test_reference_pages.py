@@ -16,10 +16,10 @@ from pages import PAGES, ROOT
 
 import atomsim
 from atomsim.cli.app import app
-from atomsim.scene.field_docs import words_in
-from atomsim.scene.schema import field_docs
+from atomsim.scene.declarations import sections
+from atomsim.scene.field_docs import field_docs
 
-WORDS = [*words_in("groups"), *words_in("bonds"), *words_in("forces")]
+WORDS = [word for section in sections().values() for word in section.words]
 
 EXTRA_EXAMPLES = {"within", "between", "among", "rotate", "spin", "jitter", "render", "selections", "extends"}
 

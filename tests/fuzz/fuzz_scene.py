@@ -24,7 +24,7 @@ with atheris.instrument_imports(include=["atomsim"]):
     from atomsim.core.pairs import near
     from atomsim.errors import SceneError
     from atomsim.scene import loads
-    from atomsim.scene.schema import field_docs
+    from atomsim.scene.field_docs import field_docs
 
 ROOT = Path(__file__).parents[2]
 

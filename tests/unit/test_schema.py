@@ -3,20 +3,40 @@
 from __future__ import annotations
 
 import copy
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import jsonschema
 import pytest
+from pydantic import Field, create_model
 
-from atomsim.errors import Mark
+from atomsim.errors import Mark, SceneError
 from atomsim.scene import language
-from atomsim.scene.field_docs import declaration_at, descriptions, words_in
-from atomsim.scene.language import Camera, Collisions, Declaration, Jitter, Render, RingGroup, Rotation, Scene, Spin
-from atomsim.scene.schema import field_docs, schema, schema_text
+from atomsim.scene.declarations import declaration_at, declarations, sections
+from atomsim.scene.field_docs import descriptions, field_docs
+from atomsim.scene.language import (
+    Camera,
+    Collisions,
+    Declaration,
+    Force,
+    Jitter,
+    Render,
+    RingGroup,
+    Rotation,
+    Scene,
+    Spin,
+)
+from atomsim.scene.language.base import Named, Selection, Vector
+from atomsim.scene.loader import loads
+from atomsim.scene.schema import schema, schema_text
 from atomsim.scene.yaml.strict_yaml import read_yaml
 
 REPOSITORY = Path(__file__).parents[2]
+COMMITTED = REPOSITORY / "atomsim" / "scene" / "scene.schema.json"
 SHIPPED = sorted(REPOSITORY.glob("scenes/*.yaml"))
 GOOD: dict[str, Any] = {
     "atomsim": 1,
@@ -49,8 +69,32 @@ def with_value(path: str, value: object) -> dict[str, Any]:
 
 
 def test_the_committed_schema_is_up_to_date() -> None:
-    committed = REPOSITORY / "atomsim" / "scene" / "scene.schema.json"
-    assert committed.read_text(encoding="utf-8") == schema_text(), "atomsim schema > atomsim/scene/scene.schema.json"
+    assert COMMITTED.read_text(encoding="utf-8") == schema_text(), "atomsim schema > atomsim/scene/scene.schema.json"
+
+
+def test_every_reference_leads_to_a_definition() -> None:
+    references = set(re.findall(r'"#/\$defs/(\w+)"', schema_text()))
+    assert references == set(schema()["$defs"])
+
+
+def test_no_names_are_too_few_but_a_change_may_have_none(validator: jsonschema.Draft202012Validator) -> None:
+    assert not validator.is_valid(with_value("groups", {}))
+    validator.validate({"extends": "rods.yaml", "groups": {}})
+
+
+@pytest.mark.parametrize("flag", ["-O", "-OO"])
+def test_the_schema_does_not_depend_on_optimisation(flag: str) -> None:
+    """Docstrings, which tell what declarations are, are gone from the classes then."""
+    code = "import sys; from atomsim.scene.schema import schema_text; sys.stdout.buffer.write(schema_text().encode())"
+    done = subprocess.run([sys.executable, flag, "-c", code], capture_output=True, check=True)
+    assert done.stdout.decode() == schema_text()
+
+
+def test_pydantic_has_no_say_in_the_schema(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its own schemas differ from version to version."""
+    for hook in ("model_json_schema", "__get_pydantic_json_schema__"):
+        monkeypatch.setattr(Declaration, hook, classmethod(pytest.fail))
+    assert schema_text() == COMMITTED.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
@@ -119,14 +163,14 @@ def test_a_scene_that_extends_need_not_be_complete(validator: jsonschema.Draft20
 
 
 def test_every_field_of_every_declaration_is_described() -> None:
-    declarations = {
+    exported = {
         declaration.__name__: declaration
         for declaration in map(language.__dict__.get, language.__all__)
         if isinstance(declaration, type) and issubclass(declaration, Declaration) and declaration is not Declaration
     }
     table = field_docs()
-    assert set(table) == set(declarations)
-    for name, declaration in declarations.items():
+    assert set(table) == set(exported)
+    for name, declaration in exported.items():
         assert set(table[name]) == set(declaration.model_fields)
         assert all(doc.description.endswith(".") and doc.type for doc in table[name].values()), name
 
@@ -180,6 +224,49 @@ def test_declaration_at(path: tuple[str | int, ...], declaration: type[Declarati
     assert declaration_at(path, GOOD) is declaration
 
 
+class Toy(Declaration):
+    """A kind of force that the package does not export."""
+
+    kind: Literal["toy"]
+    """Does nothing."""
+    wants: Vector
+    """Three numbers."""
+    acts_on: Selection = ("all",)
+    """The atoms that feel it."""
+
+
+@pytest.fixture
+def toy(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A language with one more kind of force, which is a member of the union and named nowhere else."""
+    forces = Named[Annotated[Force | Toy, Field(discriminator="kind")]]
+    scene = create_model(
+        "Scene", __base__=Scene, __module__=Scene.__module__, forces=(forces, Field(default_factory=dict))
+    )
+    for module in ("declarations", "loader"):
+        monkeypatch.setattr(f"atomsim.scene.{module}.Scene", scene)
+    sections.cache_clear()
+    declarations.cache_clear()
+    yield
+    sections.cache_clear()
+    declarations.cache_clear()
+
+
+def test_a_kind_is_known_everywhere_by_being_in_the_union(toy: None) -> None:
+    assert "Toy" in schema()["$defs"]
+    assert field_docs()["Toy"]["wants"].type == "[x, y, z]"
+    text = "atomsim: 1\ntime_step: 1\nrounds: 1\ngroups: {a: {shape: ring, count: 3, radius: 3}}\nforces:\n  f: {%s}\n"
+    for written, message in (
+        ("kind: toy, acts_on: b", "6:18: forces.f.acts_on: there is no group `b`; the groups are a"),
+        ("kind: toy, wnats: 1", "6:18: forces.f.wnats: unknown key `wnats`; did you mean `wants`?"),
+        ("kind: toy, wants: 1", "6:18: forces.f.wants: needs [x, y, z] (got 1)"),
+        ("kind: toyy", '6:7: forces.f.kind: unknown kind "toyy"; did you mean `toy`?'),
+        ("kind: toy", "6:3: forces.f.wants: missing: Three numbers"),
+    ):
+        with pytest.raises(SceneError) as caught:
+            loads(text % written, "s")
+        assert f"s:{message}" in str(caught.value).split("\n")
+
+
 def test_words_of_a_section() -> None:
-    assert list(words_in("groups")) == ["string", "ring", "polygon", "plane", "block", "atoms"]
-    assert words_in("forces")["hold"] == ["kind", "acts_on"]
+    assert list(sections()["groups"].words) == ["string", "ring", "polygon", "plane", "block", "atoms"]
+    assert sections()["collisions"].words == {}

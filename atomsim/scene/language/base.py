@@ -101,6 +101,10 @@ def _drop_nulls(value: Any) -> Any:
     return {key: inner for key, inner in value.items() if inner is not None} if isinstance(value, dict) else value
 
 
+class OneOrList:
+    """Says of a list that one item alone will do."""
+
+
 Declared = TypeVar("Declared")
 
 Named = Annotated[dict[Name, Declared], BeforeValidator(_drop_nulls)]

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema
+from pydantic import BeforeValidator, Field
 
 from atomsim.scene.language.base import (
     Axis,
@@ -15,6 +13,7 @@ from atomsim.scene.language.base import (
     Count,
     Declaration,
     Number,
+    OneOrList,
     Positive,
     Vector,
 )
@@ -42,15 +41,7 @@ def _as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, (list, tuple)) else (value,)
 
 
-class _OneOrList:
-    """Tells the JSON Schema of a list that one item alone will do."""
-
-    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        items = handler(core)
-        return {"anyOf": [items["items"], items]}
-
-
-Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(_as_tuple), _OneOrList()]
+Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(_as_tuple), OneOrList()]
 """A turn, or a list of turns."""
 
 

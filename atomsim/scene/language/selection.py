@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 from atomsim.scene.mistakes.wording import readable
 
-SELECTION_KEYS = ("within", "between", "among", "acts_on", "about")
-"""The keys under which declarations select atoms."""
-
 _EXPRESSION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_-]*)\s*(?:\[([^\[\]]*)\]\s*)?", re.ASCII)
 _NUMBER = re.compile(r"\s*([+-]?[0-9]{1,18})\s*", re.ASCII)
 

@@ -40,7 +40,7 @@ def _blanks(node: Node, path: KeyPath) -> Iterator[tuple[KeyPath, Node]]:
 
 def _is_single(path: KeyPath, data: dict[str, Any]) -> bool:
     """Tell whether a key may be left out and takes a value, not further keys or names."""
-    from atomsim.scene.field_docs import declaration_at, is_mapping  # only a mistake needs it
+    from atomsim.scene.declarations import declaration_at, is_mapping  # only a mistake needs it
 
     key, declaration = str(path[-1]), declaration_at(path[:-1], data)
     if declaration is None:

@@ -9,16 +9,13 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from atomsim.errors import Problem
-from atomsim.scene.field_docs import declaration_at, declared_in, descriptions, discriminator, words_in
+from atomsim.scene.declarations import declaration_at, discriminator, sections
+from atomsim.scene.field_docs import descriptions, form
 from atomsim.scene.language.css_colors import CSS_COLORS
 from atomsim.scene.mistakes.wording import NEEDS_BRACKETS, either, meant, readable, shown, suggestion
 from atomsim.scene.overrides import is_setting
-from atomsim.scene.schema import field_docs
 from atomsim.scene.source import KeyPath, Source
 from atomsim.scene.yaml.scalars import is_number
-
-_TAGGED_SECTIONS = {"groups": "shape", "bonds": "rule", "forces": "kind"}
-"""Sections whose declarations are chosen by a key; pydantic puts its word into paths: (groups, hoop, *ring*, count)."""
 
 _BOOLEANS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 
@@ -96,9 +93,12 @@ _NEEDS = {
 
 
 def _path(found: ErrorDetails, data: Any) -> KeyPath:
-    """Return where the user wrote it: without pydantic's marks of keys, chosen words and items made of scalars."""
+    """Return where the user wrote it: without pydantic's marks of keys, chosen words and items made of scalars.
+
+    The word that chooses a declaration is put into the path of whatever is inside: (groups, hoop, *ring*, count).
+    """
     loc = found["loc"][:-1] if found["type"] == "name" else found["loc"]
-    if len(loc) > 2 and loc[0] in _TAGGED_SECTIONS:
+    if len(loc) > 2 and _chosen_by(loc) is not None:
         loc = (*loc[:2], *loc[3:])
     path: list[str | int] = []
     for part in loc:
@@ -108,6 +108,12 @@ def _path(found: ErrorDetails, data: Any) -> KeyPath:
             path.append(part)
             data = _value((part,), data)
     return tuple(path)
+
+
+def _chosen_by(path: KeyPath) -> str | None:
+    """Return the key whose word chooses a declaration in the section of a path, if there is one."""
+    section = sections().get(str(path[0])) if path else None
+    return section.key if section is not None else None
 
 
 def _value(path: KeyPath, data: Any) -> Any:
@@ -128,7 +134,7 @@ def _form(found: ErrorDetails, path: KeyPath, data: Any) -> str:
     """Return how a list is written, or at least how long it is."""
     declaration = declaration_at(path[:-1], data)
     if declaration is not None:
-        return field_docs()[declaration.__name__][str(path[-1])].type
+        return form(declaration, str(path[-1]))
     match found:
         case {"type": "missing", "loc": (*_, int(last))}:
             return f"{last + 1} entries"
@@ -148,7 +154,8 @@ def _unknown_key(path: KeyPath, data: Any, source: Source) -> str:
     if is_number(key) and _value(path, data) is None:
         return message + NEEDS_BRACKETS
     chosen = discriminator(declaration) if declaration is not None else None
-    owners = [other for other, fields in words_in(str(path[0])).items() if key in fields] if chosen is not None else []
+    words = sections()[str(path[0])].words if chosen is not None else {}
+    owners = [word for word, other in words.items() if key in other.model_fields]
     mark, reopened = source.mark(path), source.mark(path[:-1])
     if mark.file != reopened.file and not is_setting(mark) and (owners or suggestion(key, keys) is None):
         return f"{message}to drop what is extended, write `{readable(key)}: null` in {reopened.file}"
@@ -172,7 +179,7 @@ def _misnamed(path: KeyPath, data: Any, source: Source) -> str:
 def _unknown_word(found: ErrorDetails, path: KeyPath, data: Any, source: Source) -> Problem:
     """Complain about the word that chooses a declaration: the shape, rule or kind."""
     key = found["ctx"]["discriminator"].strip("'")
-    words = list(words_in(str(path[0])))
+    words = list(sections()[str(path[0])].words)
     declared = _value(path, data)
     if key not in declared:
         return source.problem((*path, key), f"missing: {either(words)}{_misnamed(path, data, source)}")
@@ -188,14 +195,14 @@ def _keys(path: KeyPath, data: Any) -> str:
     declaration = declaration_at(path, data)
     if declaration is not None:
         return f"{{{', '.join(f'{key}: …' for key in descriptions(declaration))}}}"
-    if path[0] in _TAGGED_SECTIONS and len(path) > 1:
-        return f"{{{_TAGGED_SECTIONS[str(path[0])]}: …}}"
-    return "of names, `name: …`"
+    chosen_by = _chosen_by(path) if len(path) > 1 else None
+    return f"{{{chosen_by}: …}}" if chosen_by is not None else "of names, `name: …`"
 
 
 def _indentation(path: KeyPath) -> str:
     """Say where a key belongs that stands where a name is expected."""
-    is_key = any(path[-1] in declaration.model_fields for declaration in declared_in(str(path[0])))
+    section = sections().get(str(path[0]))
+    is_key = any(path[-1] in declaration.model_fields for declaration in section.declarations) if section else False
     return "; indent it under the name" if len(path) == 2 and is_key else ""
 
 

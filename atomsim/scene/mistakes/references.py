@@ -7,7 +7,8 @@ from contextlib import suppress
 from typing import Any
 
 from atomsim.errors import Problem
-from atomsim.scene.language.selection import SELECTION_KEYS, SelectionSyntaxError, parse_selection
+from atomsim.scene.declarations import sections, selecting_keys
+from atomsim.scene.language.selection import SelectionSyntaxError, parse_selection
 from atomsim.scene.mistakes.wording import meant, readable
 from atomsim.scene.source import KeyPath, Source, dotted
 from atomsim.scene.yaml.tree import Node
@@ -37,7 +38,7 @@ def check_deletions(root: Node) -> list[Problem]:
         root: the merged tree of a scene; what is malformed is left to validation.
     """
     problems = []
-    for section in ("groups", "bonds", "collisions", "forces"):
+    for section in sections():
         named = root.child(section)
         entries = named.value if named is not None and isinstance(named.value, dict) else {}
         present = [name for name, node in entries.items() if node.value is not None]
@@ -51,9 +52,10 @@ def check_deletions(root: Node) -> list[Problem]:
 
 def _selected(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     """Every group that a selection names."""
-    for section in ("bonds", "collisions", "forces"):
+    for section, declared in sections().items():
+        keys = dict.fromkeys(key for declaration in declared.declarations for key in selecting_keys(declaration))
         for name, declaration in _mapping(data.get(section)).items():
-            for key in SELECTION_KEYS:
+            for key in keys:
                 for path, text in _texts(_mapping(declaration).get(key), (section, name, key)):
                     with suppress(SelectionSyntaxError):
                         yield path, parse_selection(text).group
