@@ -9,7 +9,7 @@ import os
 import stat
 from pathlib import Path
 
-from atomsim.errors import InputError, RunError
+from atomsim.errors import InputError, Remedy, RunError
 
 _NO_LOCKS_HERE = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP}
 _NO_HARD_LINKS_HERE = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK}
@@ -61,7 +61,7 @@ def open_locked(path: Path, *, create: bool = False) -> int:
 
 
 def _lock(fd: int, path: Path) -> None:
-    in_use = RunError(f"{path}: another atomsim is writing it; wait for that to end, or choose another name with -o")
+    in_use = RunError(f"{path}: another atomsim is writing it; wait for that to end", Remedy("rename"))
     try:
         fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -1,30 +1,63 @@
-"""Every error a user can cause, with the exit code it ends in; knows nothing of scenes or arrays."""
+"""Every error a user can cause: the facts, what would help, and the exit code it ends in."""
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, TypeAlias
+
+RemedyKind: TypeAlias = Literal[
+    "replace", "rename", "go on", "begin", "recover", "more rounds", "new file", "show scene", "record golden", "numpy"
+]
 
 
-def command(words: str, path: Path) -> str:
-    """Return a command on a file as it can be pasted into a shell, whatever the file is called.
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """What would help: whoever speaks to the user knows how it is done, the command line with options and commands.
 
-    >>> command("render", Path("my run.h5")), command("render", Path("-x.h5"))
-    ("atomsim render 'my run.h5'", 'atomsim render ./-x.h5')
+    Attributes:
+        kind: what to do.
+        path: the file to do it with, if there is one.
     """
-    name = str(path)
-    return f"atomsim {words} {shlex.quote(f'./{name}' if name.startswith('-') else name)}"
+
+    kind: RemedyKind
+    path: Path = Path()
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """Something that a user should know although it is no error; `str()` states it, without the remedies."""
+
+    message: str
+    remedies: tuple[Remedy, ...] = ()
+
+    def __str__(self) -> str:
+        return self.message
 
 
 class AtomsimError(Exception):
-    """An error with a message for the user; the command line prints the message and exits with `exit_code`.
+    """An error that a user can cause.
 
-    An error may travel (pickled to another process, copied), so `args` are always what its class is called with.
+    It may travel (pickled to another process, copied), so `args` are always what its class is called with.
+
+    Args:
+        message: the facts.
+        remedies: what would help, where the message does not say it.
+
+    Attributes:
+        remedies: as given.
+        exit_code: what the command line ends with, having printed the message and how the remedies are typed.
     """
 
     exit_code = 1
+
+    def __init__(self, message: object, *remedies: Remedy) -> None:
+        super().__init__(message, *remedies)
+        self.remedies = remedies
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class RunError(AtomsimError):
@@ -73,9 +106,9 @@ class Problem:
 class SceneError(InputError):
     """A scene with mistakes; carries all of them, in the order of the file (exit code 2)."""
 
-    def __init__(self, problems: Iterable[Problem]) -> None:
+    def __init__(self, problems: Iterable[Problem], *remedies: Remedy) -> None:
         self.problems = tuple(problems)
-        super().__init__(self.problems)
+        super().__init__(self.problems, *remedies)
 
     def __str__(self) -> str:
         return "\n".join(str(problem) for problem in self.problems)

@@ -19,6 +19,7 @@ def main() -> None:
     # A scene means the same whatever else is installed, and looking for plugins takes time.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
+        from atomsim.cli.remedies import with_remedies
         from atomsim.cli.terminal.output import prepare, tell
         from atomsim.errors import AtomsimError
 
@@ -30,7 +31,7 @@ def main() -> None:
     except KeyboardInterrupt:
         code = INTERRUPTED
     except AtomsimError as error:
-        tell(str(error))
+        tell(with_remedies(error))
         code = error.exit_code
     except MemoryError as error:
         tell(str(error) or "not enough memory for this; fewer atoms, pairs or frames at a time need less")

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from atomsim.cli.remedies import with_remedies
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR
 from atomsim.core.diagnosis.forecast import forecast
 from atomsim.core.diagnosis.stiffness import largest_time_step
@@ -76,7 +77,7 @@ def describe_trajectory(trajectory: Trajectory) -> list[str]:
         else:
             length = [math.hypot(*row) for row in (series[0], series[-1])]
             lines.append(f"  {'|' + name.replace('_', ' ') + '|':<28}{length[0]:>14.6g}{length[1]:>14.6g}")
-    return [printable(line) for line in (*lines, *trajectory.notices())]
+    return [printable(line) for line in (*lines, *map(with_remedies, trajectory.notices()))]
 
 
 def _line(label: str, value: str, details: Iterable[str]) -> str:

@@ -16,7 +16,7 @@ from atomsim.core.numba_backend import cache
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.pairs.collisions import involved_atoms
 from atomsim.core.simulate import MakeStepper
-from atomsim.errors import InputError
+from atomsim.errors import InputError, Remedy
 
 BACKENDS = ("auto", "numpy", "numba")
 
@@ -110,7 +110,8 @@ def _numba_as_asked_for(threads: int | None, model: Model) -> Backend:
     except Exception as error:
         raise InputError(
             f"Numba is installed but does not work here: {_first_line(error)}; "
-            "use --backend numpy, or install it anew with: pip install --force-reinstall 'atomsim[fast]'"
+            "install it anew with: pip install --force-reinstall 'atomsim[fast]'",
+            Remedy("numpy"),
         ) from error
 
 

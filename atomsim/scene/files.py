@@ -7,7 +7,7 @@ import os
 import re
 from pathlib import Path
 
-from atomsim.errors import Mark, Problem, SceneError
+from atomsim.errors import Mark, Problem, Remedy, SceneError
 from atomsim.scene.mistakes.wording import printable, shown, suggestion
 from atomsim.scene.yaml.strict_yaml import MAX_CHARACTERS, read_yaml
 from atomsim.scene.yaml.tree import Node, merge
@@ -112,7 +112,7 @@ def _read_text(name: str) -> str:
     except (OSError, ValueError) as error:
         raise _unreadable(name, _reason(error, name)) from None
     if data.startswith(_HDF5):
-        raise _unreadable(name, "this is a trajectory; `atomsim show --scene` writes out its scene")
+        raise _unreadable(name, "this is a trajectory, not a scene", Remedy("show scene", Path(name)))
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise _unreadable(name, "the file is UTF-16; save it as UTF-8")
     if len(data) > MAX_CHARACTERS:
@@ -149,5 +149,5 @@ def _no_such_file(name: str, written: str, got: str = "") -> str:
     return f"there is no such file{got}{remedy}"
 
 
-def _unreadable(name: str, message: str) -> SceneError:
-    return SceneError([Problem(Mark(printable(name), 0, 0), "", message)])
+def _unreadable(name: str, message: str, *remedies: Remedy) -> SceneError:
+    return SceneError([Problem(Mark(printable(name), 0, 0), "", message)], *remedies)

@@ -18,7 +18,7 @@ import numpy as np
 
 from atomsim.core.model import Floats, Frame, GroupSpan, State
 from atomsim.disk import write_whole
-from atomsim.errors import InputError
+from atomsim.errors import InputError, Remedy
 from atomsim.tasks.compare import Difference, frame_difference
 
 LAYOUT = 1
@@ -133,7 +133,7 @@ def read_golden(path: Path) -> Golden:
             dict(_frames(document["frames"])),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        raise InputError(f"{path}: is not a golden trajectory; record it with: atomsim golden record") from None
+        raise InputError(f"{path}: is not a golden trajectory", Remedy("record golden")) from None
 
 
 def _frames(encoded: dict[str, str]) -> Iterator[tuple[int, Floats]]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from atomsim.disk import behind, write_whole
-from atomsim.errors import InputError
+from atomsim.errors import InputError, Remedy
 from atomsim.scene import load
 from atomsim.scene.mistakes.wording import meant
 from atomsim.shipped import PACKAGE, shipped
@@ -72,7 +72,7 @@ def begin(name: str, target: Path | None = None, *, replace: bool = False) -> li
     written = {path: text for path, text in texts.items() if not _holds(path, text)}
     for path in written:
         if path.exists() and not replace:
-            raise InputError(f"{path} exists already; choose another name with -o, or add --force")
+            raise InputError(f"{path} exists already", Remedy("rename"), Remedy("replace"))
         if not behind(path).parent.is_dir():
             raise InputError(f"{path}: the folder {path.parent} does not exist")
     for path, text in written.items():

@@ -11,11 +11,11 @@ from typing import TypeAlias
 
 from atomsim.compiler.colors import atom_color
 from atomsim.drawing import Row, View, compose, frames_to
-from atomsim.errors import InputError
+from atomsim.errors import InputError, Notice
 from atomsim.tasks.recompute import compile_inside
 from atomsim.trajectory import Trajectory
 
-Notice: TypeAlias = Callable[[str], None]
+Hear: TypeAlias = Callable[[Notice], None]
 
 N_FRAMES = 6
 """How many rounds a strip shows where nobody chose."""
@@ -28,7 +28,7 @@ def render(
     rounds: Sequence[int] | None = None,
     camera: tuple[float, float] | None = None,
     size: tuple[int, int] | None = None,
-    notice: Notice | None = None,
+    notice: Hear | None = None,
 ) -> None:
     """Draw a strip: frames side by side, a row per trajectory. A picture of that name is replaced.
 
@@ -56,7 +56,7 @@ def render_frames(
     rounds: Sequence[int] | None = None,
     camera: tuple[float, float] | None = None,
     size: tuple[int, int] | None = None,
-    notice: Notice | None = None,
+    notice: Hear | None = None,
 ) -> list[Path]:
     """Draw every frame, or those of some rounds, as a PNG of its own; see `render`.
 
@@ -70,7 +70,7 @@ def render_frames(
 
 
 def _opened(
-    trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], opened: ExitStack, notice: Notice | None
+    trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], opened: ExitStack, notice: Hear | None
 ) -> list[Trajectory]:
     """Open one trajectory or several, until the stack is left."""
     paths = [trajectories] if isinstance(trajectories, (str, os.PathLike)) else trajectories

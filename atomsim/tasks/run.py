@@ -16,7 +16,7 @@ from atomsim.core.diagnosis.tunnelling import SpeedWatch
 from atomsim.core.free_memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
-from atomsim.errors import BlowUpError, InputError, RunError
+from atomsim.errors import BlowUpError, InputError, Remedy, RunError
 from atomsim.scene import LoadedScene
 from atomsim.scene.difference import differences
 from atomsim.tasks.recompute import compile_inside
@@ -160,8 +160,9 @@ def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
     if changed:
         raise InputError(
             f"{path} is a run of another scene than {scene.source.name} is now:\n"
-            + "".join(f"  {line}\n" for line in changed)
-            + f"go on with the scene inside, without naming one, or run {scene.source.name} into a new file with -o"
+            + "\n".join(f"  {line}" for line in changed),
+            Remedy("go on", path),
+            Remedy("new file", Path(scene.source.name)),
         )
 
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol, overload
 import numpy as np
 
 from atomsim.core.model import Floats, Frame, Indices, State
-from atomsim.errors import InputError, command
+from atomsim.errors import InputError, Notice, Remedy
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import HEAD, journal_path
@@ -101,7 +101,7 @@ class Trajectory(Sequence[Frame]):
             journal = Journal(os.open(found, os.O_RDONLY | os.O_CLOEXEC))
             if len(journal.series) == 0:
                 journal.close()
-                raise DamageError(f"holds no frame yet; to run it: {command('run --resume', self.path)}")
+                raise InputError(f"{found}: holds no frame yet", Remedy("begin", self.path))
             self.lost_bytes = journal.lost
             return journal
         if signature != _HDF5_SIGNATURE:
@@ -158,22 +158,26 @@ class Trajectory(Sequence[Frame]):
         """By name as in `Observables`, what was measured of each frame, (n_frames,) or (n_frames, 3)."""
         return {name: np.ascontiguousarray(self._source.series[name]) for name in OBSERVABLES}
 
-    def notices(self) -> list[str]:
+    def notices(self) -> list[Notice]:
         """Return what a user should know about where the frames come from; empty for a finished file alone."""
         notices = []
         if self.from_journal:
             notices.append(
-                f"{self.path}: read from its journal up to round {self.rounds[-1]}; to go on: "
-                f"{command('run --resume', self.path)}; to make the file of what there is: "
-                f"{command('recover', self.path)}"
+                Notice(
+                    f"{self.path}: read from its journal up to round {self.rounds[-1]}",
+                    (Remedy("go on", self.path), Remedy("recover", self.path)),
+                )
             )
         elif self.has_journal:
             notices.append(
-                f"{self.path}: there is also a journal of a newer run that has not finished; to go on with it: "
-                f"{command('run --resume', self.path)}"
+                Notice(
+                    f"{self.path}: there is also a journal of a newer run that has not finished",
+                    (Remedy("go on", self.path),),
+                )
             )
         if self.lost_bytes:
-            notices.append(f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out")
+            torn = f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out"
+            notices.append(Notice(torn))
         return notices
 
     def verify(self) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from atomsim.core.model import Frame, State
 from atomsim.disk import behind, is_protected
-from atomsim.errors import InputError, RunError, command
+from atomsim.errors import InputError, Remedy, RunError
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
@@ -242,13 +242,12 @@ def _check_free(path: Path, *, replace: bool) -> None:
     if path.exists() and not path.is_file():
         raise InputError(f"{path}: is not a regular file")
     if is_protected(path):
-        raise InputError(f"{path}: is write-protected; choose another name with -o, or allow writing to it")
+        raise InputError(f"{path}: is write-protected", Remedy("rename"))
     for taken in (path, journal_path(path)):
         if taken.exists() and not is_trajectory(taken):
-            raise InputError(f"{taken} exists and is no trajectory; choose another name with -o")
+            raise InputError(f"{taken} exists and is no trajectory", Remedy("rename"))
         if taken.exists() and not replace:
-            go_on = command("run --resume", path)
-            raise InputError(f"{taken} exists; add --force to replace it, or go on with: {go_on}")
+            raise InputError(f"{taken} exists", Remedy("replace"), Remedy("go on", path))
 
 
 def _last_state(journal: Journal) -> State | None:
@@ -284,4 +283,4 @@ def _turn_back(path: Path, rounds: int | None, accept: Callable[[Header], None])
 
 
 def _done_already(path: Path, last_round: int) -> InputError:
-    return InputError(f"{path}: has done {last_round} rounds already; ask for more with --rounds")
+    return InputError(f"{path}: has done {last_round} rounds already", Remedy("more rounds"))

@@ -111,7 +111,7 @@ def test_a_disk_that_fills_up_while_a_run_goes_on(small_disk, tmp_path):
     assert (process.returncode, out) == (1, "")
     assert re.fullmatch(
         r"out\.h5\.part: No space left on device; what was recorded before is intact in it: "
-        r"make room, then go on with `atomsim run --resume out\.h5`",
+        r"make room first; to go on: atomsim run --resume out\.h5",
         one_line(err),
     )
     assert finish("show", "out.h5", cwd=small_disk).returncode == 0
@@ -188,8 +188,8 @@ def test_a_current_folder_that_is_gone(tmp_path):
 
 def test_a_second_run_into_the_same_file_is_refused(tmp_path):
     process = running(tmp_path)
-    in_use = "out.h5.part: another atomsim is writing it; wait for that to end, or choose another name with -o"
-    exists = "out.h5.part exists; add --force to replace it, or go on with: atomsim run --resume out.h5"
+    in_use = "out.h5.part: another atomsim is writing it; wait for that to end; choose another name with -o"
+    exists = "out.h5.part exists; add --force to replace it; to go on: atomsim run --resume out.h5"
     for arguments, code, message in (
         (RUN, 2, exists),
         ((*RUN, "--force"), 1, in_use),

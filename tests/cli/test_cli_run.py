@@ -34,7 +34,7 @@ def test_an_existing_file_stays_without_force(cli):
     before = Path("out.h5").read_bytes()
     result = cli("run", "scenes/threads.yaml", "--rounds", "20")
     assert (result.code, result.out) == (2, "")
-    assert result.err == "out.h5 exists; add --force to replace it, or go on with: atomsim run --resume out.h5\n"
+    assert result.err == "out.h5 exists; add --force to replace it; to go on: atomsim run --resume out.h5\n"
     assert Path("out.h5").read_bytes() == before
     assert cli("run", "scenes/threads.yaml", "--rounds", "20", "--force").code == 0
     assert Path("out.h5").read_bytes() != before

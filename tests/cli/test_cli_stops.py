@@ -156,7 +156,7 @@ def test_a_changed_scene_is_refused_with_the_difference(cli):
         "  groups.left.count: 70 before, 60 now\n"
         "  bonds.right: no longer there\n"
         "  forces.g: new\n"
-        "go on with the scene inside, without naming one, or run scenes/rods.yaml into a new file with -o\n"
+        "to go on: atomsim run --resume out.h5; to run scenes/rods.yaml: choose another name with -o\n"
     )
     assert Path("out.h5").read_bytes() == before
     assert not Path("out.h5.part").exists()
@@ -210,4 +210,4 @@ def test_commands_for_names_with_spaces_can_be_pasted(cli):
     name = "my run (1).h5"
     assert "next: atomsim render 'my run (1).h5'\n" in cli("run", "scenes/rods.yaml", "--rounds", "20", "-o", name).out
     result = cli("run", "scenes/rods.yaml", "-o", name)
-    assert result.err.endswith("or go on with: atomsim run --resume 'my run (1).h5'\n")
+    assert result.err.endswith("to go on: atomsim run --resume 'my run (1).h5'\n")

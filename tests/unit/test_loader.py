@@ -110,10 +110,7 @@ def test_a_scene_can_be_piped() -> None:
         (GOOD.encode("utf-16"), "s.yaml: the file is UTF-16; save it as UTF-8"),
         (b"\0" * 100, "s.yaml:1:1: the character U+0000 cannot stand in YAML"),
         (b"a" * (2**24 + 1), "s.yaml: the file is larger than 16 MiB"),
-        (
-            b"\x89HDF\r\n\x1a\n\0\0",
-            "s.yaml: this is a trajectory; `atomsim show --scene` writes out its scene",
-        ),
+        (b"\x89HDF\r\n\x1a\n\0\0", "s.yaml: this is a trajectory, not a scene"),
     ],
     ids=["empty", "latin 1", "byte", "utf-16", "zeros", "large", "trajectory"],
 )

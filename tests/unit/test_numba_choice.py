@@ -9,7 +9,7 @@ from atomsim.core import backend as backends
 from atomsim.core.backend import choose
 from atomsim.core.numba_backend import cache
 from atomsim.core.numpy_backend.stepper import NumpyStepper
-from atomsim.errors import InputError
+from atomsim.errors import InputError, Remedy
 
 MODEL, STATE = compiled({"pair": {"shape": "string", "count": 2, "step": [1, 0, 0]}})
 
@@ -95,8 +95,9 @@ def test_a_broken_numba(monkeypatch: pytest.MonkeyPatch) -> None:
         choose("numba", None, MODEL, 1)
     assert str(caught.value) == (
         "Numba is installed but does not work here: Numba needs NumPy 1.9 or less; "
-        "use --backend numpy, or install it anew with: pip install --force-reinstall 'atomsim[fast]'"
+        "install it anew with: pip install --force-reinstall 'atomsim[fast]'"
     )
+    assert caught.value.remedies == (Remedy("numpy"),)
 
 
 def test_damaged_kernels_are_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -58,7 +58,7 @@ def test_a_taken_name_is_told_before_the_scene_is_compiled(tmp_path: Path) -> No
     nonsense = load(SCENES / "threads.yaml", ["bonds.left.within=left[999]"])
     path = tmp_path / "out.h5"
     run(load(SCENES / "threads.yaml"), path, rounds=10)
-    with pytest.raises(InputError, match="exists; add --force to replace it"):
+    with pytest.raises(InputError, match="exists"):
         run(nonsense, path)
     with pytest.raises(SceneError, match="is out of range"):
         run(nonsense, path, replace=True)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 
 
@@ -38,7 +39,7 @@ def check(
             model, state = compile_scene(loaded.scene, loaded.source)
         except SceneError as error:
             n_wrong += 1
-            tell(str(error))
+            tell(with_remedies(error))
         else:
             scene = loaded.scene
             say(f"{path}: {scene.title}" if scene.title else str(path))

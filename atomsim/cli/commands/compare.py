@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 
 
@@ -30,7 +31,7 @@ def compare(
 
     with Trajectory(first) as one, Trajectory(second) as other:
         for notice in (*one.notices(), *other.notices()):
-            tell(notice)
+            tell(with_remedies(notice))
         if one.header.n_atoms != other.header.n_atoms:
             say(f"different: {first} has {one.header.n_atoms} atoms, {second} {other.header.n_atoms}")
             raise typer.Exit(1)

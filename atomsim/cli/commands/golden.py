@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atomsim.cli.options import Backend, Threads
+from atomsim.cli.remedies import command
 from atomsim.cli.terminal.output import say, tell
 
 if TYPE_CHECKING:
@@ -73,7 +74,6 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "aut
 
     atomsim golden check scenes/rods.yaml --into tests/golden
     """
-    from atomsim.errors import command
     from atomsim.tasks.golden import check_golden, golden_path, read_golden
 
     _require_folder(into)

@@ -7,7 +7,9 @@ from typing import Annotated, TypeVar
 
 import typer
 
+from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+from atomsim.errors import InputError, Notice, Remedy
 
 Part = TypeVar("Part", int, float)
 
@@ -43,7 +45,6 @@ def render(
     atomsim render rods.h5 rod-thread.h5 threads.h5 -o figure1.png
     """
     from atomsim.drawing.files import is_our_picture
-    from atomsim.errors import InputError
     from atomsim.tasks import render as pictures
 
     wanted = None if rounds is None else _rounds(rounds)
@@ -59,19 +60,17 @@ def render(
     picture = output or (first.with_suffix(".png") if first.name else first)  # a folder is told of when it is read
     is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
     if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
-        raise InputError(f"{picture} exists and atomsim did not draw it; add --force to replace it")
+        raise InputError(f"{picture} exists and atomsim did not draw it", Remedy("replace"))
     pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels, notice=_notice)
     say(str(picture))
 
 
-def _notice(message: str) -> None:
-    tell(message)
+def _notice(notice: Notice) -> None:
+    tell(with_remedies(notice))
 
 
 def _rounds(text: str) -> list[int]:
     """Read `0,250,500`."""
-    from atomsim.errors import InputError
-
     try:
         rounds = [int(part) for part in text.split(",")]
     except ValueError:
@@ -83,8 +82,6 @@ def _rounds(text: str) -> list[int]:
 
 def _pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
     """Read two numbers."""
-    from atomsim.errors import InputError
-
     try:
         first, second = (kind(part) for part in text.lower().split(separator))
     except ValueError:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atomsim.cli.options import Backend, Threads
+from atomsim.cli.remedies import command, in_words
 from atomsim.cli.terminal.output import say, tell
-from atomsim.errors import command
+from atomsim.errors import InputError, Remedy
 
 if TYPE_CHECKING:
     from atomsim.tasks.run import Outcome
@@ -52,7 +53,6 @@ def run(
     """
     from atomsim.cli.terminal.progress import Progress
     from atomsim.cli.terminal.signals import wishes_to_stop
-    from atomsim.errors import InputError
     from atomsim.scene import load
     from atomsim.tasks import run as record
 
@@ -101,7 +101,7 @@ def _warn(warning: str) -> None:
 
 
 def _to_go_on(path: Path) -> str:
-    return f"to go on: {command('run --resume', path)}"
+    return in_words(Remedy("go on", path))
 
 
 def _summarise(outcome: Outcome, seconds: float) -> None:

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.remedies import command
 from atomsim.cli.terminal.output import say
-from atomsim.errors import command
 
 HEADINGS = {"paper": "Scenes of the paper", "recipe": "Recipes"}
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from atomsim.cli.options import Backend, Threads
+from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 
 
@@ -32,7 +33,7 @@ def verify(
 
     with Trajectory(trajectory) as recorded:
         for notice in recorded.notices():
-            tell(notice)
+            tell(with_remedies(notice))
         header = recorded.header
         _, model, state = compile_inside(header, trajectory)
         last_round = int(recorded.rounds[-1])

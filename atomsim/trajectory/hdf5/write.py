@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from atomsim import disk
-from atomsim.errors import RunError, command
+from atomsim.errors import Remedy, RunError
 from atomsim.trajectory.document import contents_digest, document, fields, storable
 from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
 from atomsim.trajectory.hdf5.sink import Sink
@@ -39,8 +39,7 @@ def build(journal: Journal, path: Path) -> None:
     """
     if len(journal.series) == 0:
         raise RunError(
-            f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet; "
-            f"to run it: {command('run --resume', path)}"
+            f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet", Remedy("begin", path)
         )
     target = disk.behind(path)
     temporary = disk.beside(target, ".tmp")
@@ -52,13 +51,16 @@ def build(journal: Journal, path: Path) -> None:
             temporary.unlink(missing_ok=True)
             raise
     except OSError as error:
-        raise RunError(f"{path}: cannot be written: {error.strerror}; {_remedy(path)}") from error
+        raise _unwritten(path, error) from error
 
 
-def _remedy(path: Path) -> str:
-    if journal_path(path).exists():
-        return f"all frames are safe in {journal_path(path)}: make room, then `{command('recover', path)}`"
-    return "its folder or its journal is gone, and the frames with it"
+def _unwritten(path: Path, error: OSError) -> RunError:
+    """Say where the frames are now."""
+    facts = f"{path}: cannot be written: {error.strerror}"
+    journal = journal_path(path)
+    if journal.exists():
+        return RunError(f"{facts}; all frames are safe in {journal}: make room first", Remedy("recover", path))
+    return RunError(f"{facts}; its folder or its journal is gone, and the frames with it")
 
 
 def _write(journal: Journal, temporary: Path) -> None:

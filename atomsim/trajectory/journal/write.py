@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from atomsim import disk
-from atomsim.errors import RunError, command
+from atomsim.errors import Remedy, RunError
 from atomsim.trajectory.document import document
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import BONDS, END, FRAMES, GO_ON, HEAD, PREFIX, checksum_start
@@ -176,6 +176,6 @@ class JournalWriter:
         with contextlib.suppress(OSError):
             os.ftruncate(self._fd, self._whole)
         return RunError(
-            f"{self._path}: {error.strerror}; what was recorded before is intact in it: "
-            f"make room, then go on with `{command('run --resume', self._path.with_suffix(''))}`"
+            f"{self._path}: {error.strerror}; what was recorded before is intact in it: make room first",
+            Remedy("go on", self._path.with_suffix("")),
         )

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from sample_run import digest_of, frame, go_on, header, holds, killed, record
 
-from atomsim.errors import AtomsimError, InputError, RunError
+from atomsim.errors import AtomsimError, InputError, Remedy, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
 
 CALLS = ("open", "pwrite", "fsync", "ftruncate", "link", "replace")
@@ -111,9 +111,9 @@ def test_the_message_of_a_full_disk_while_running(tmp_path: Path) -> None:
             recording.finish(End("finished"))
         patch.undo()
     assert str(caught.value) == (
-        f"{path}.part: No space left on device; what was recorded before is intact in it: "
-        f"make room, then go on with `atomsim run --resume {path}`"
+        f"{path}.part: No space left on device; what was recorded before is intact in it: make room first"
     )
+    assert caught.value.remedies == (Remedy("go on", path),)
     with Trajectory(path) as trajectory:
         assert holds(trajectory, [0, 10])
 
@@ -127,9 +127,9 @@ def test_the_message_of_a_full_disk_while_building(tmp_path: Path) -> None:
         with pytest.raises(RunError) as caught:
             recording.finish(End("finished"))
     assert str(caught.value) == (
-        f"{path}: cannot be written: No space left on device; all frames are safe in {path}.part: "
-        f"make room, then `atomsim recover {path}`"
+        f"{path}: cannot be written: No space left on device; all frames are safe in {path}.part: make room first"
     )
+    assert caught.value.remedies == (Remedy("recover", path),)
     recover(path)
     assert digest_of(path) == digest_of(record(tmp_path / "whole.h5", header(40)))
 
@@ -230,9 +230,7 @@ def test_a_journal_that_goes_away_before_it_is_locked(
     monkeypatch.setattr(fcntl, "flock", lock_late)
     with pytest.raises(RunError) as caught:
         Recorder.resume(path)
-    assert str(caught.value) == (
-        f"{journal}: another atomsim is writing it; wait for that to end, or choose another name with -o"
-    )
+    assert str(caught.value) == f"{journal}: another atomsim is writing it; wait for that to end"
     assert (journal.read_bytes() if journal.exists() else None) == successor
 
 

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sample_run import digest_of, frame, go_on, header, holds, is_same_state, killed, record
 
-from atomsim.errors import InputError, RunError
+from atomsim.errors import InputError, Remedy, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
 from atomsim.trajectory.journal.form import FRAMES, PREFIX
 
@@ -103,9 +103,8 @@ def test_what_exists_is_not_touched_without_replace(tmp_path: Path, suffix: str)
     before = digest_of(taken)
     with pytest.raises(InputError) as caught:
         Recorder(path, header())
-    assert str(caught.value) == (
-        f"{taken} exists; add --force to replace it, or go on with: atomsim run --resume {path}"
-    )
+    assert str(caught.value) == f"{taken} exists"
+    assert caught.value.remedies == (Remedy("replace"), Remedy("go on", path))
     assert digest_of(taken) == before
     assert list(tmp_path.iterdir()) == [taken]
 
@@ -118,7 +117,8 @@ def test_what_is_no_trajectory_is_never_replaced(tmp_path: Path, suffix: str, re
     taken.write_text("precious")
     with pytest.raises(InputError) as caught:
         Recorder(tmp_path / "out.h5", header(), replace=replace)
-    assert str(caught.value) == f"{taken} exists and is no trajectory; choose another name with -o"
+    assert str(caught.value) == f"{taken} exists and is no trajectory"
+    assert caught.value.remedies == (Remedy("rename"),)
     assert taken.read_text() == "precious"
     assert list(tmp_path.iterdir()) == [taken]
 
@@ -182,9 +182,8 @@ def test_a_second_writer_is_kept_out(tmp_path: Path, act: str) -> None:
         go_on_from = frame(30)
         recording.append(go_on_from)
     if act != "begin":
-        assert str(caught.value) == (
-            f"{journal_path(path)}: another atomsim is writing it; wait for that to end, or choose another name with -o"
-        )
+        assert str(caught.value) == f"{journal_path(path)}: another atomsim is writing it; wait for that to end"
+        assert caught.value.remedies == (Remedy("rename"),)
     assert list(tmp_path.iterdir()) == [journal_path(path)]
     with Trajectory(path) as trajectory:
         assert holds(trajectory, [0, 10, 20, 30])
@@ -274,9 +273,8 @@ def test_a_journal_without_a_frame_goes_on_from_the_beginning(tmp_path: Path, un
         pass
     with pytest.raises(RunError) as caught:
         recover(path)
-    assert str(caught.value) == (
-        f"{path}: nothing to build: its journal out.h5.part holds no frame yet; to run it: atomsim run --resume {path}"
-    )
+    assert str(caught.value) == f"{path}: nothing to build: its journal out.h5.part holds no frame yet"
+    assert caught.value.remedies == (Remedy("begin", path),)
     with Recorder.resume(path) as recording:
         assert recording.state is None
         go_on(recording)
@@ -301,7 +299,8 @@ def test_a_torn_tail_is_cut_when_the_run_goes_on(tmp_path: Path, uninterrupted: 
 def test_a_finished_run_has_nothing_to_go_on_to(tmp_path: Path, uninterrupted: Path, rounds: int | None) -> None:
     with pytest.raises(InputError) as caught:
         Recorder.resume(uninterrupted, rounds=rounds)
-    assert str(caught.value) == f"{uninterrupted}: has done 40 rounds already; ask for more with --rounds"
+    assert str(caught.value) == f"{uninterrupted}: has done 40 rounds already"
+    assert caught.value.remedies == (Remedy("more rounds"),)
     assert list(tmp_path.iterdir()) == [uninterrupted]
 
 
