@@ -27,10 +27,10 @@ def atom_color(scene: Scene) -> Floats:
     n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
     color = np.empty((n_atoms, 3))
     for name, own in _own_colors(scene).items():
-        color[layouts[name].start : layouts[name].stop] = _rgb(own)
+        color[layouts[name].start : layouts[name].stop] = rgb(own)
     selections = Selections(layouts, n_atoms)
     for selection, chosen in scene.render.colors.items():
-        color[selections.atoms((selection,))] = _rgb(chosen)
+        color[selections.atoms((selection,))] = rgb(chosen)
     return color
 
 
@@ -65,6 +65,7 @@ def hex_color(color: str) -> str:
     return color if len(color) == 7 else "#" + "".join(2 * digit for digit in color[1:])
 
 
-def _rgb(color: str) -> tuple[float, float, float]:
+def rgb(color: str) -> tuple[float, float, float]:
+    """Return red, green and blue of a colour from 0 to 1."""
     red, green, blue = (int(hex_color(color)[place : place + 2], 16) / 255 for place in (1, 3, 5))
     return red, green, blue

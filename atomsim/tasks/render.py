@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-from atomsim.compiler.colors import atom_color
+from atomsim.compiler.colors import atom_color, rgb
 from atomsim.drawing import Row, View, compose, frames_to
 from atomsim.errors import InputError, Notice
 from atomsim.tasks.recompute import compile_inside
@@ -98,7 +98,7 @@ def _row(
         frames=tuple(trajectory[_nearest(trajectory, round_index)] for round_index in asked),
         color=atom_color(scene),
         view=view,
-        background=chosen.background,
+        background=rgb(chosen.background),
         asked=asked,
         start=trajectory[0].position,
     )

@@ -41,7 +41,7 @@ def pixels_of(path):
 
 
 def test_frames_are_pasted_pixel_by_pixel(tmp_path):
-    rows = [row(), row("", n_frames=9), row("Third", n_frames=2, background="lightyellow")]
+    rows = [row(), row("", n_frames=9), row("Third", n_frames=2, background=(1.0, 1.0, 0.875))]
     out = tmp_path / "strip.png"
     compose(rows, out, SIZE)
     layout = Layout(SIZE, (3, 9, 2), (True, False, True), False)
@@ -139,6 +139,19 @@ def test_any_title_can_be_written(tmp_path, title):
     assert (pixels_of(tmp_path / "strip.png")[:30, right:] == 255).all()
 
 
+@pytest.mark.parametrize(
+    ("size", "captions"), [((160, 64), 2), ((40, 64), 2), ((24, 480), 0), ((16, 4096), 0), ((4096, 16), 2)]
+)
+def test_a_caption_that_does_not_fit_is_shortened_or_left_out(tmp_path, size, captions):
+    whole = ["round 0 (nearest to 1)", "round 50 (nearest to 51)"]
+    compose([row("", n_frames=2, asked=(1, 51))], tmp_path / "strip.svg", size)
+    words = re.findall(r"<!-- (.+?) -->", (tmp_path / "strip.svg").read_text(encoding="utf-8"))
+    assert len(words) == captions
+    assert words == whole[:captions] or all(
+        word.endswith("…") and caption.startswith(word[:-1]) for word, caption in zip(words, whole, strict=True)
+    )
+
+
 def test_single_frames(tmp_path):
     files = frames_to([row()], tmp_path / "new" / "folder", SIZE)
     assert [file.name for file in files] == ["round-000.png", "round-050.png", "round-100.png"]
@@ -176,11 +189,6 @@ def test_what_cannot_be_is_refused(tmp_path, monkeypatch, name, size, message):
         compose([row("", n_frames=8)], Path(name), size)
     assert str(caught.value) == message
     assert not list(tmp_path.iterdir())
-
-
-def test_a_background_that_is_no_color_is_refused(tmp_path):
-    with pytest.raises(InputError, match=r"^background: `grue` is not a color; use a CSS name or #rrggbb$"):
-        compose([row(background="grue")], tmp_path / "a.png", SIZE)
 
 
 def test_frames_do_not_go_into_a_file(tmp_path):

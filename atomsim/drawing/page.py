@@ -1,0 +1,118 @@
+"""A strip as the bytes of a file: pictures and lines of text in their places."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from atomsim.drawing.files import MARK
+from atomsim.drawing.layout import Layout
+from atomsim.drawing.picture import Pixels
+from atomsim.drawing.plain_matplotlib import plain_matplotlib
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.ft2font import FT2Font
+
+_AGG, _PDF, _SVG = ({"backend": name} for name in ("agg", "pdf", "svg"))
+
+FORMATS: Mapping[str, Mapping[str, Any]] = {
+    ".png": _AGG | {"metadata": {"Software": None, "Comment": MARK}},
+    ".jpg": _AGG | {"pil_kwargs": {"quality": 92, "comment": MARK.encode()}},
+    ".jpeg": _AGG | {"pil_kwargs": {"quality": 92, "comment": MARK.encode()}},
+    ".webp": _AGG | {"pil_kwargs": {"lossless": True, "xmp": MARK.encode()}},
+    ".pdf": _PDF | {"metadata": {"Creator": MARK, "Producer": None, "CreationDate": None}},
+    ".svg": _SVG | {"metadata": {"Creator": MARK, "Date": None}},
+}
+"""What a strip can be written as, with our mark, and without the time of writing and the versions of programs."""
+
+_DPI = 64
+"""A power of two, so that no size in pixels is lost on the way through inches."""
+
+_LONGEST_LINE = 400
+"""Letters of a line beyond this are not even measured."""
+
+_MISSING = "\N{REPLACEMENT CHARACTER}"
+"""Stands for what the font does not have; for such letters matplotlib would warn, and look in other fonts."""
+
+_INK, _FAINT, _ALARM = "#1d1d1f", "#56565c", "#b22222"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """A picture with the line below it that says what it shows, and one that says what is wrong with it."""
+
+    picture: Pixels
+    caption: str
+    notice: str
+
+
+def encode(titles: Sequence[str], rows: Sequence[Sequence[Panel]], layout: Layout, extension: str) -> bytes:
+    """Return a strip as a file: the same strip gives the same bytes, whatever the user's matplotlib is set to.
+
+    Args:
+        titles: what stands above each row.
+        rows: the panels of each row, from top to bottom.
+        layout: where they go.
+        extension: the format, one of `FORMATS`.
+    """
+    content = io.BytesIO()
+    with plain_matplotlib({"svg.hashsalt": "atomsim"}) as font:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+        from matplotlib.ft2font import FT2Font
+
+        figure = Figure(figsize=(layout.width / _DPI, layout.height / _DPI), dpi=_DPI, facecolor="white")
+        FigureCanvasAgg(figure)  # which becomes the figure's canvas; text is measured with it
+        page = _Page(figure, layout, font, FT2Font(str(font)))
+        for number, (title, panels) in enumerate(zip(titles, rows, strict=True)):
+            page.add(number, title, panels)
+        figure.savefig(content, format=extension[1:], dpi=_DPI, **FORMATS[extension])
+    return content.getvalue()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Page:
+    """A matplotlib figure in which places are pixels from the top left."""
+
+    figure: Figure
+    layout: Layout
+    font: Path
+    letters: FT2Font
+
+    def add(self, number: int, title: str, panels: Sequence[Panel]) -> None:
+        """Put a row in its place."""
+        layout, font = self.layout, self.layout.font
+        left, top = layout.corner(number, 0)
+        self._write(left, top - 0.75 * font, title, 1.25 * font, _INK, layout.width - 2 * left)
+        width, height = layout.frame
+        for index, panel in enumerate(panels):
+            left, top = layout.corner(number, index)
+            self.figure.figimage(panel.picture, xo=left, yo=layout.height - top - height, origin="upper")
+            self._write(left, top + height + 1.4 * font, panel.caption, font, _FAINT, width)
+            self._write(left, top + height + 2.8 * font, panel.notice, font, _ALARM, width)
+
+    def _write(self, left: float, baseline: float, words: str, size: float, color: str, room: float) -> None:
+        """Write one line, shortened to the room it has; where there is not even room for `…`, nothing."""
+        line = self._printable(words)
+        text = self.figure.text(
+            left / self.layout.width,
+            1.0 - baseline / self.layout.height,
+            line,
+            font=self.font,
+            fontsize=size * 72 / _DPI,
+            color=color,
+            parse_math=False,
+        )
+        while text.get_window_extent().width > room:
+            shorter = line[: len(line) * 9 // 10].rstrip()
+            text.set_text(f"{shorter}…" if line else "")
+            line = shorter
+
+    def _printable(self, words: str) -> str:
+        """Return a text on one line, in letters that the font has."""
+        line = " ".join(words[:_LONGEST_LINE].split())
+        return "".join(letter if self.letters.get_char_index(ord(letter)) else _MISSING for letter in line)
