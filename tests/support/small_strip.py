@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from atomsim.core.model import Frame, Observables
+from atomsim.core.model import Frame, Observables, State
 from atomsim.drawing.strip import Row, compose
 
 EXTENSIONS = ("png", "svg", "pdf")
@@ -17,7 +17,7 @@ def small_strip(folder: Path) -> None:
     """Draw it into a folder."""
     position = np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 0.5]])
     nothing = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
-    frame = Frame(0, 0.0, position, np.zeros((2, 3)), "", nothing)
+    frame = Frame(State(0, position, np.zeros((2, 3))), 0.0, "", nothing)
     for extension in EXTENSIONS:
         compose([Row("Two balls, $x^2$, 環", (frame,), np.ones((2, 3)))], folder / f"strip.{extension}", (64, 48))
 
