@@ -14,6 +14,7 @@ from atomsim.core.model import Indices
 from atomsim.scene.declarations import selecting_keys
 from atomsim.scene.language import BlockGroup, Declaration, PlaneGroup, PolygonGroup, RingGroup, Scene
 from atomsim.scene.language.selection import parse_selection
+from atomsim.scene.mistakes.wording import meant, readable
 from atomsim.scene.source import KeyPath
 
 LARGE = 1 << 26
@@ -123,7 +124,8 @@ class Selections:
             return np.arange(self._n_atoms)
         layout = self._layouts.get(part.group)
         if layout is None:
-            raise SelectionError(expression, f"there is no group `{part.group}`; there are {', '.join(self._layouts)}")
+            remedy = meant(part.group, self._layouts, "the groups are")
+            raise SelectionError(expression, f"there is no group `{readable(part.group)}`; {remedy}")
         if not part.axes:
             return np.arange(layout.start, layout.stop)
         grid = layout.grid if len(part.axes) > 1 else (layout.stop - layout.start,)

@@ -53,7 +53,8 @@ def test_the_expression_of_an_atom_selects_it_alone() -> None:
 @pytest.mark.parametrize(
     ("expression", "message"),
     [
-        ("rong", "there is no group `rong`; there are ring, floor, brick"),
+        ("rong", "there is no group `rong`; did you mean `ring`?"),
+        ("water", "there is no group `water`; the groups are ring, floor, brick"),
         ("ring[10]", "`ring[10]` is out of range: ring has 10 there, 0 to 9"),
         ("ring[-11]", "`ring[-11]` is out of range: ring has 10 there, 0 to 9"),
         ("ring[10:]", "`ring[10:]` selects no atoms: ring has 10 there, 0 to 9"),

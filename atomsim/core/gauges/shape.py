@@ -1,0 +1,93 @@
+"""How far selections reach: lowest and highest atoms, boxes, radii; and how much their bonds are stretched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from atomsim.core.gauges.block import Atoms, Block, Memoryless, dot, length, one_row, ordered_sum
+from atomsim.core.gauges.motion import mean
+from atomsim.core.model import Floats, Indices
+
+PAIRS_AT_A_TIME = 1 << 14
+"""Lengths of bonds computed at once: what is known of them should stay in the cache of one core."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Level(Memoryless):
+    """The coordinate of the lowest or highest of some atom centres along an axis."""
+
+    atoms: Atoms
+    axis: int
+    which: Literal["lowest", "highest"]
+    n_columns = 1
+
+    def measure(self, block: Block, memory: Floats) -> Floats:
+        """Return the least or largest coordinate."""
+        along = block.position[self.axis, self.atoms]
+        return one_row(along.min(axis=0) if self.which == "lowest" else along.max(axis=0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Extent(Memoryless):
+    """The size of the box around some atom centres, along some axes."""
+
+    atoms: Atoms
+    axes: tuple[int, ...] = (0, 1, 2)
+
+    @property
+    def n_columns(self) -> int:
+        return len(self.axes)
+
+    def measure(self, block: Block, memory: Floats) -> Floats:
+        """Return the largest less the least coordinate per axis."""
+        along = block.position[list(self.axes)][:, self.atoms]
+        return np.asarray(along.max(axis=1) - along.min(axis=1))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Radius(Memoryless):
+    """The distance from the centroid of some atoms to the nearest or farthest of them."""
+
+    atoms: Atoms
+    which: Literal["inner", "outer"]
+    n_columns = 1
+
+    def measure(self, block: Block, memory: Floats) -> Floats:
+        """Return the least or largest |c − centroid|."""
+        position = block.position[:, self.atoms]
+        offset = position - mean(position)[:, None]
+        squared = dot(offset, offset)
+        return one_row(np.sqrt(squared.min(axis=0) if self.which == "inner" else squared.max(axis=0)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Strain(Memoryless):
+    """The strain d/r − 1 of some bonds: the largest, the least, or the mean.
+
+    Attributes:
+        first: one atom of each bond, (n_bonds,) int64.
+        second: the other, (n_bonds,) int64.
+        rest: the desired distance r of each, above zero [length], (n_bonds,) float64.
+        which: what is told of them.
+    """
+
+    first: Indices
+    second: Indices
+    rest: Floats
+    which: Literal["max", "min", "mean"]
+    n_columns = 1
+
+    def measure(self, block: Block, memory: Floats) -> Floats:
+        """Return max, min or Σ / n over the bonds."""
+        strain = np.empty((self.first.size, block.n_frames))
+        step = max(1, PAIRS_AT_A_TIME // block.n_frames)
+        for start in range(0, self.first.size, step):
+            part = slice(start, start + step)
+            way = block.position.take(self.second[part], axis=1) - block.position.take(self.first[part], axis=1)
+            strain[part] = length(way) / self.rest[part, None] - 1.0
+        if self.which == "mean":
+            return one_row(ordered_sum(strain) / self.first.size)
+        return one_row(strain.max(axis=0) if self.which == "max" else strain.min(axis=0))
