@@ -141,7 +141,7 @@ def _scene_reference() -> Iterator[str]:
     yield _examples("spin")
     yield from _family("## Bonds", "bonds", docs)
     yield from _section("## Collisions", ["Collisions"], docs)
-    yield _examples("within", "between", "among")
+    yield _examples("within", "between", "among", "except_bound")
     yield from _family("## Forces", "forces", docs)
     yield from _section("## Pictures: `render`", ["Render"], docs)
     yield from _section("### Camera", ["Camera"], docs)

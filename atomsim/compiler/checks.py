@@ -6,6 +6,7 @@ Every check yields complaints in the order of the scene; whoever compiles decide
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -97,6 +98,9 @@ def at_one_place(path: KeyPath, pairs: Pairs, what: str, selections: Selections)
 def nothing_collides(path: KeyPath, table: CollisionTable) -> Iterator[Complaint]:
     """Check that a table has pairs, and name the key to blame."""
     if n_collision_pairs(table):
+        return
+    if n_collision_pairs(replace(table, bound=None)):
+        yield Complaint((*path, "except_bound"), "nothing can collide: all atoms here are that few bonds apart")
         return
     gaps = [block.min_gap for block in table.blocks if isinstance(block, Within) and block.atoms.size > 1]
     if gaps:

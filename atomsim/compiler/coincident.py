@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
+from atomsim.core.pairs.collisions import table_pairs_near
 from atomsim.core.pairs.near import pair_squares
 
 Pairs = tuple[Indices, Indices]
+
+NO_DISTANCE = 2e-162
+"""Atoms nearer than this are at one place: the square of their distance is zero [length]."""
 
 
 def coincident_among(position: Floats, first: Indices, second: Indices) -> Pairs:
@@ -31,11 +35,16 @@ def coincident_pairs(position: Floats, table: CollisionTable) -> Pairs:
 
     Returns:
         The pairs, first < second; one may come more than once.
+
+    Raises:
+        MemoryError: some pairs are bound and do not collide, and there are too many at one place to look at each.
     """
     found = [
         _within(position, block) if isinstance(block, Within) else _between(position, block) for block in table.blocks
     ]
     one, other = np.concatenate(found, axis=1)
+    if one.size and table.bound is not None:  # those found may be bound, and others at their place not
+        return table_pairs_near(table, np.ascontiguousarray(position.T), NO_DISTANCE)
     return np.minimum(one, other), np.maximum(one, other)
 
 

@@ -19,6 +19,7 @@ from atomsim.compiler.shapes import place, unit
 from atomsim.core.model import (
     Between,
     BondTable,
+    BoundPairs,
     CollisionTable,
     DampingForce,
     ExternalForce,
@@ -35,6 +36,7 @@ from atomsim.core.model import (
     TorqueForce,
     Within,
 )
+from atomsim.core.pairs.bonded import bound_pairs
 from atomsim.core.pairs.near import pair_squares, squared_distance
 from atomsim.errors import Problem, SceneError
 from atomsim.scene.language import (
@@ -82,6 +84,7 @@ class _Compiler:
         self._scene = scene
         self._source = source
         self._problems: list[Problem] = []
+        self._bound_pairs: dict[int, BoundPairs] = {}
 
     def compile(self) -> tuple[Model, State]:
         """Compile every section in order and report all mistakes together."""
@@ -97,7 +100,7 @@ class _Compiler:
             self._position = _jittered(self._placed, scene.jitter)
         self._stop_on(checks.too_large_numbers(scene, layouts, self._position, velocity))
         self._stop_on(checks.too_many_bonds(scene.bonds, self._selections))
-        bonds = [self._bond_table(name, entry) for name, entry in scene.bonds.items()]
+        self._bonds = _all_of([self._bond_table(name, entry) for name, entry in scene.bonds.items()])
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
         forces = [self._force(name, entry) for name, entry in scene.forces.items()]
         self._complain_all(checks.colors_of_nothing(scene, self._selections))
@@ -107,7 +110,7 @@ class _Compiler:
             time_step=scene.time_step,
             n_atoms=n_atoms,
             groups=self._spans(layouts),
-            bonds=_all_of(bonds),
+            bonds=self._bonds,
             collisions=_all_of(collisions),
             forces=_all_of(forces),
         )
@@ -145,14 +148,25 @@ class _Compiler:
         """Describe which atoms may touch; pairs are found only when they are near."""
         path = ("collisions", name)
         try:
-            table = CollisionTable(self._origin(*path), tuple(self._blocks(collisions)))
+            table = CollisionTable(
+                self._origin(*path), tuple(self._blocks(collisions)), self._bound(int(collisions.except_bound))
+            )
+            if self._complain_all(checks.nothing_collides(path, table)):
+                return None
+            meets = self._meets(path, "set to collide", lambda position: coincident_pairs(position, table))
         except SelectionError as error:
             self._complain_of_selection(path, collisions, error)
             return None
-        if self._complain_all(checks.nothing_collides(path, table)):
+        except MemoryError as error:
+            self._complain((*path, "except_bound"), str(error))
             return None
-        meets = self._meets(path, "set to collide", lambda position: coincident_pairs(position, table))
         return None if meets else table
+
+    def _bound(self, n_bonds: int) -> BoundPairs | None:
+        """Return the pairs up to so many bonds apart, counted over all bonds; None for no bonds at all."""
+        if n_bonds and n_bonds not in self._bound_pairs:
+            self._bound_pairs[n_bonds] = bound_pairs(self._bonds, self._placed.shape[0], n_bonds)
+        return self._bound_pairs.get(n_bonds)
 
     def _blocks(self, collisions: Collisions) -> Iterable[Within | Between]:
         """Yield the blocks of pairs that a declaration is the union of."""

@@ -80,11 +80,33 @@ class Between:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class BoundPairs:
+    """The pairs of atoms that are at most so many bonds apart, by sets of twins.
+
+    Twins are atoms bound to one another and to the same others: a rigid body is one set, and its pairs are not listed.
+
+    Attributes:
+        twins: the set each atom belongs to, (n_atoms,) int64.
+        n_sets: number of sets.
+        sets_near: set · n_sets + set of all sets whose atoms are near enough, either way round and each with itself,
+            ascending.
+    """
+
+    twins: Indices
+    n_sets: int
+    sets_near: Indices
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class CollisionTable:
-    """The pairs of one `collisions` declaration as the union of its blocks; never expanded: a fluid has 10¹¹."""
+    """The pairs of one `collisions` declaration as the union of its blocks; never expanded: a fluid has 10¹¹.
+
+    Pairs that are `bound` are left out.
+    """
 
     origin: Origin
     blocks: tuple[Within | Between, ...]
+    bound: BoundPairs | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,7 +21,18 @@ from atomsim.scene.field_docs import field_docs
 
 WORDS = [word for section in sections().values() for word in section.words]
 
-EXTRA_EXAMPLES = {"within", "between", "among", "rotate", "spin", "jitter", "render", "selections", "extends"}
+EXTRA_EXAMPLES = {
+    "within",
+    "between",
+    "among",
+    "except_bound",
+    "rotate",
+    "spin",
+    "jitter",
+    "render",
+    "selections",
+    "extends",
+}
 
 
 def text_of(name: str) -> str:

@@ -73,6 +73,8 @@ COLLISIONS: dict[str, Any] = {
     "contact": {"between": ["floor", ["thread", "wheel", "brick[:, 0, :]"]]},
     "overlap": {"between": [["loose", "moved"], ["moved", "turned"]]},
     "rest": {"among": ["triangle", "thread[2:7]", "hoop", ["brick", "loose"]]},
+    "unbound": {"within": ["triangle", "brick"], "except_bound": True},
+    "far": {"between": ["all", ["wheel", "thread"]], "except_bound": 3},
 }
 
 FORCES: dict[str, Any] = {

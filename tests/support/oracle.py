@@ -140,13 +140,14 @@ def build(scene: Data) -> World:
     for group, start in zip(groups.values(), itertools.accumulate(map(len, groups.values()), initial=0), strict=False):
         group.start = start
     placed = [position for group in groups.values() for position in group.position]
+    bonds = [bound_pairs(entry, groups, placed) for entry in scene["bonds"].values()]
     return World(
         time_step=scene["time_step"],
         round_index=0,
         position=_jittered(placed, scene["jitter"]),
         velocity=[velocity for group in groups.values() for velocity in group.velocity],
-        bonds=[bound_pairs(entry, groups, placed) for entry in scene["bonds"].values()],
-        collisions=[colliding_pairs(entry, groups) for entry in scene["collisions"].values()],
+        bonds=bonds,
+        collisions=[colliding_pairs(entry, groups, bonds) for entry in scene["collisions"].values()],
         forces=[_force(entry, groups, placed) for entry in scene["forces"].values()],
     )
 

@@ -124,7 +124,7 @@ def _neighbours(entry: Data, atoms: list[int], expression: str, groups: Groups) 
     return found
 
 
-def colliding_pairs(entry: Data, groups: Groups) -> list[tuple[int, int]]:
+def colliding_pairs(entry: Data, groups: Groups, bonds: list[list[tuple[int, int, float]]]) -> list[tuple[int, int]]:
     """Return the pairs of a collision declaration, sorted."""
     found: set[tuple[int, int]] = set()
     for expression in entry["within"] or ():
@@ -133,7 +133,16 @@ def colliding_pairs(entry: Data, groups: Groups) -> list[tuple[int, int]]:
     sides = [select(side, groups) for side in entry["between"] or entry["among"] or ()]
     for left, right in itertools.combinations(sides, 2):
         found |= {(min(i, k), max(i, k)) for i in left for k in right if i != k}
-    return sorted(found)
+    left_out = {atom: _around(atom, int(entry["except_bound"]), bonds) for atom in {atom for atom, _ in found}}
+    return sorted((i, k) for i, k in found if k not in left_out[i])
+
+
+def _around(atom: int, n_bonds: int, bonds: list[list[tuple[int, int, float]]]) -> set[int]:
+    """Return the atoms that are so many bonds away at most: as far as a rumour comes that bonds pass on."""
+    know: set[int] = {atom}
+    for _ in range(n_bonds):
+        know |= {k for table in bonds for pair in table for i, k in (pair[:2], pair[1::-1]) if i in know}
+    return know - {atom}
 
 
 def rest_squared(rest: float | str, initial: float) -> float:

@@ -102,10 +102,11 @@ def thresholds(metric: str, rest: dict[str, Any]) -> st.SearchStrategy[Data]:
 
 def collisions(choices: st.SearchStrategy[Any]) -> st.SearchStrategy[Data]:
     """Draw a collision declaration of any form."""
+    bound = {"except_bound": st.booleans() | st.integers(1, 3)}
     return (
-        st.fixed_dictionaries({"within": choices}, optional={"min_gap": counts})
-        | st.fixed_dictionaries({"between": st.tuples(choices, choices)})
-        | st.fixed_dictionaries({"among": st.lists(choices, min_size=2, max_size=3)})
+        st.fixed_dictionaries({"within": choices}, optional={"min_gap": counts, **bound})
+        | st.fixed_dictionaries({"between": st.tuples(choices, choices)}, optional=bound)
+        | st.fixed_dictionaries({"among": st.lists(choices, min_size=2, max_size=3)}, optional=bound)
     )
 
 

@@ -7,6 +7,7 @@ import random
 import tracemalloc
 from collections.abc import Callable
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from support.running import atoms_at, compiled, scene_of
 from atomsim.compiler import compile_scene, room
 from atomsim.compiler.colors import PALETTE
 from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
-from atomsim.core.pairs import near
+from atomsim.core.pairs import bonded, near
 from atomsim.core.pairs.collisions import n_collision_pairs
 from atomsim.errors import SceneError
 from atomsim.scene.loader import loads
@@ -121,6 +122,43 @@ def test_bonds_that_make_no_sense(bonds: dict[str, Any], message: str) -> None:
 )
 def test_collisions_of_no_two_atoms(collisions: dict[str, Any], message: str) -> None:
     assert mistakes(PAIR, collisions={"c": collisions}) == [f"collisions.{message}"]
+
+
+def test_collisions_of_bound_atoms_only() -> None:
+    rigid = {"b": {"within": "pair", "rule": "all-pairs"}}
+    for collisions in ({"within": "pair"}, {"between": ["pair", "pair"]}, {"among": ["pair[0]", "pair[1]"]}):
+        assert mistakes(PAIR, bonds=rigid, collisions={"c": {**collisions, "except_bound": True}}) == [
+            "collisions.c.except_bound: nothing can collide: all atoms here are that few bonds apart"
+        ]
+
+
+def test_atoms_at_one_place_may_be_bound_through_others_and_then_do_not_collide() -> None:
+    """Both ends are bound to the hook; among those at one place, one pair that is not bound is enough for an error."""
+    groups = {"ends": atoms_at((0, 0, 0), (0, 0, 0)), "hook": atoms_at((0, 0, 1.5)), "loose": atoms_at((0, 0, 9))}
+    bonds = {"b": {"between": ["hook", "ends"], "rule": "all-pairs"}}
+    collide = {"c": {"within": "all", "except_bound": 2}}
+    compiled(groups, bonds=bonds, collisions={"c": {"among": ["ends", "hook", "loose"], "except_bound": 2}})
+    everything = {"c": {"between": ["all", "all"], "except_bound": 2}}
+    compiled(groups, bonds=bonds, collisions=everything)
+    assert mistakes(groups, bonds=bonds, collisions={"c": {**everything["c"], "except_bound": True}}) == [
+        "collisions.c: ends[0] and ends[1] are set to collide but start at the same place"
+    ]
+    groups["loose"] = atoms_at((0, 0, 0))
+    assert mistakes(groups, bonds=bonds, collisions=collide) == [
+        "collisions.c: ends[0] and loose[0] are set to collide but start at the same place (and so do others)"
+    ]
+
+
+def test_more_pairs_so_many_bonds_apart_than_memory() -> None:
+    groups = {"a": {"shape": "string", "count": 4, "step": [1, 0, 0]}}
+    sections = {
+        "bonds": {"b": {"within": "a", "rule": "neighbour"}},
+        "collisions": {"c": {"within": "a", "except_bound": 2}},
+    }
+    with patch.object(bonded, "LARGE", 0), patch.object(bonded, "free_memory", return_value=10):
+        assert mistakes(groups, **sections) == [
+            "collisions.c.except_bound: too many pairs are up to 2 bonds apart to fit into memory"
+        ]
 
 
 def test_bound_atoms_at_the_same_place() -> None:

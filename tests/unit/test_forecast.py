@@ -74,8 +74,8 @@ def test_overlaps_at_the_start_tell_the_worst_pair_and_the_energy() -> None:
     groups = {"a": atoms_at((0, 0, 0), (1.9, 0, 0)), "b": atoms_at((0, 1, 0))}
     (warning,) = warnings(groups, 0.1, collisions={"c": {"among": ["a", "b"]}})
     assert warning == (
-        "collisions.c (<scene>:1): 1 pair overlaps at the start, most a[0] (atom 0) and b[0] (atom 2) 1 apart "
-        "(contact is at 2); that releases the energy 12.7; move them apart, or leave them out of the collision"
+        "collisions.c (<scene>:1): 1 pair overlaps at the start (1 of a and b), most a[0] (atom 0) and b[0] (atom 2) "
+        "1 apart (contact is at 2); that releases the energy 12.7; move them apart"
     )
 
 
@@ -86,11 +86,11 @@ def string(count: int, step: float) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("groups", "within", "remedy"),
     [
-        ({"a": string(5, 0.7)}, "a", "with `min_gap: 3`"),
-        ({"a": string(5, 0.7), "b": string(2, 9)}, ["b", "a"], "with `min_gap: 3`"),
-        ({"a": string(5, 0.7)}, "a[::2]", "with `min_gap: 2`"),
-        ({"a": string(5, 0.7)}, ["a[::2]", "a"], "with `min_gap: 3`"),
-        ({"a": string(3, 0.7)}, "a", "of the collision"),
+        ({"a": string(5, 0.7)}, "a", ", or write `min_gap: 3`"),
+        ({"a": string(5, 0.7), "b": string(2, 9)}, ["b", "a"], ", or write `min_gap: 3`"),
+        ({"a": string(5, 0.7)}, "a[::2]", ", or write `min_gap: 2`"),
+        ({"a": string(5, 0.7)}, ["a[::2]", "a"], ", or write `min_gap: 3`"),
+        ({"a": string(3, 0.7)}, "a", ""),
     ],
 )
 def test_the_smallest_gap_without_overlaps_is_named(
@@ -98,11 +98,68 @@ def test_the_smallest_gap_without_overlaps_is_named(
 ) -> None:
     """Places 1 and 2 apart overlap, 3 apart do not; a gap that leaves no pair at all is no remedy."""
     (warning,) = warnings(groups, 1e-3, collisions={"c": {"within": within}})
-    assert warning.endswith(f"; move them apart, or leave them out {remedy}")
+    assert warning.endswith(f"; move them apart{remedy}")
     if "min_gap" in remedy:
         gap = int(remedy[-2])
         assert warnings(groups, 1e-3, collisions={"c": {"within": within, "min_gap": gap}}) == []
         assert len(warnings(groups, 1e-3, collisions={"c": {"within": within, "min_gap": gap - 1}})) == 1
+
+
+def ring(count: int, radius: float) -> dict[str, Any]:
+    return {"shape": "ring", "count": count, "radius": radius}
+
+
+HOOK = {"hook": {"between": ["a[-1]", "b"], "rule": "pairs", "pairs": [[0, 0]]}}
+
+
+@pytest.mark.parametrize(
+    ("groups", "bonds", "collisions", "remedy"),
+    [
+        ({"a": string(9, 1.5)}, {"t": {"within": "a", "rule": "neighbour"}}, {"within": "a"}, ", or write {true}"),
+        ({"a": string(9, 0.7)}, {"t": {"within": "a", "rule": "neighbour"}}, {"within": "a"}, ", or write {2}"),
+        ({"a": ring(12, 1.5)}, {"t": {"within": "a", "rule": "neighbour"}}, {"within": "a"}, ", or write {2}"),
+        (
+            {"a": string(9, 1.5), "b": atoms_at((7.5, 0, 0))},
+            {"t": {"within": "a", "rule": "neighbour"}, **HOOK},
+            {"between": ["a", "b"]},
+            ", or write {true}",
+        ),
+        (
+            {"a": string(9, 1.5), "b": atoms_at((7.5, 0, 0), (-6, 1, 0))},
+            {"t": {"within": "a", "rule": "neighbour"}, **HOOK},
+            {"between": ["a", "b"]},
+            "; {true} would leave out all but 2",
+        ),
+        ({"a": string(3, 0.7)}, {"t": {"within": "a", "rule": "all-pairs"}}, {"within": "a"}, ""),
+        (
+            {"a": string(5, 0.7)},
+            {"t": {"within": "a", "rule": "all-pairs"}},
+            {"within": "a"},
+            ", or write `min_gap: 3`",
+        ),
+    ],
+)
+def test_the_key_that_leaves_out_what_is_bound_is_named(
+    groups: dict[str, Any], bonds: dict[str, Any], collisions: dict[str, Any], remedy: str
+) -> None:
+    """By the smallest number of bonds; not if it leaves nothing to collide; only partly if some are not bound."""
+    (warning,) = warnings(groups, 1e-3, bonds=bonds, collisions={"c": collisions})
+    for word in ("true", "2"):
+        remedy = remedy.replace(f"{{{word}}}", f"`except_bound: {word}`")
+    assert warning.endswith(f"; move them apart{remedy}")
+    if "or write `except_bound" in remedy:
+        n_bonds = 1 + ("2" in remedy)
+        for fewer, n_warnings in ((n_bonds, 0), (n_bonds > 1, 1)):
+            collide = {"c": {**collisions, "except_bound": fewer}}
+            assert len(warnings(groups, 1e-3, bonds=bonds, collisions=collide)) == n_warnings
+
+
+def test_the_groups_that_overlap_are_listed_with_their_numbers() -> None:
+    names = "abcdefgh"
+    groups = {name: atoms_at(*[(50.0 * k, 0.1 * i, 0) for k in range(i + 1)]) for i, name in enumerate(names)}
+    (warning,) = warnings(groups, 1e-3, collisions={"c": {"among": list(names)}})
+    assert ": 84 pairs overlap at the start (7 of g and h, 6 of f and g, 6 of f and h, 5 of e and f, " in warning
+    assert ", 5 of e and g, 5 of e and h, 50 of others), most " in warning
 
 
 def test_touching_is_no_overlap() -> None:
@@ -122,9 +179,8 @@ def test_absurd_numbers_are_warned_of_in_finite_words() -> None:
         "time_step 1e+150 is at or above 0, the largest that the stiffness of this scene allows; expect it to blow up",
         "collisions.c (<scene>:1): atoms of a move 1e+300 per round, so two of them may pass through each other "
         "(contact is at distance 2); try time_step 5e-151",
-        "collisions.c (<scene>:1): 1 pair overlaps at the start, most a[0] (atom 0) and a[1] (atom 1) 1e-150 apart "
-        "(contact is at 2); that releases the energy 1.38e-147; "
-        "move them apart, or leave them out of the collision",
+        "collisions.c (<scene>:1): 1 pair overlaps at the start (1 inside a), most a[0] (atom 0) and a[1] (atom 1) "
+        "1e-150 apart (contact is at 2); that releases the energy 1.38e-147; move them apart",
     ]
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 from support.running import after, compiled, digest_of
 
-from atomsim.core.model import Between, CollisionTable, Floats, Origin, State, Within
+from atomsim.core.model import Between, BondTable, CollisionTable, Floats, Origin, State, Within
+from atomsim.core.pairs.bonded import bound_pairs
 from atomsim.core.pairs.collisions import table_pairs_near
 
 pytest.importorskip("numba", reason="the backend is an extra")
@@ -32,11 +34,36 @@ def table_of(*blocks: Within | Between) -> CollisionTable:
 
 EVEN, ODD, ALL = np.arange(0, N_ATOMS, 2), np.arange(1, N_ATOMS, 2), np.arange(N_ATOMS)
 
+TRIPLES = bound_pairs(
+    [
+        BondTable(
+            Origin("bonds", "b", "<scene>", 1),
+            *np.array([(i, i + k) for i in range(0, N_ATOMS - 2, 3) for k in (1, 2)]).T,
+            np.ones(2 * (N_ATOMS // 3)),
+        )
+    ],
+    N_ATOMS,
+    2,
+)
+
+CHAIN = bound_pairs(
+    [
+        BondTable(
+            Origin("bonds", "b", "<scene>", 1), np.arange(N_ATOMS - 1), np.arange(1, N_ATOMS), np.ones(N_ATOMS - 1)
+        )
+    ],
+    N_ATOMS,
+    3,
+)
+
 TABLES = (
     table_of(Within(ALL, 1)),
     table_of(Within(EVEN, 4)),
     table_of(Between(ODD, EVEN[:30])),
     table_of(Between(ALL[:200], ALL[100:]), Within(ALL[50:150], 2), Within(ALL[50:150], 2)),
+    replace(table_of(Within(ALL, 1)), bound=TRIPLES),
+    replace(table_of(Between(ODD, ALL[:90]), Within(EVEN, 1)), bound=CHAIN),
+    replace(table_of(Within(EVEN, 1)), bound=TRIPLES),
 )
 
 

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from atomsim.core.diagnosis.overlaps import overlapping_groups, without_overlaps
 from atomsim.core.diagnosis.stiffness import is_damped_too_much, is_surely_stable, largest_time_step
-from atomsim.core.model import Between, CollisionTable, Indices, Model, State, TorqueForce, Within, atom_name
+from atomsim.core.model import Between, CollisionTable, Indices, Model, State, TorqueForce, atom_name
 from atomsim.core.observables import contact_potential
 from atomsim.core.pairs.collisions import table_pairs_near
 from atomsim.core.pairs.near import distinct, squared_distance
@@ -75,27 +76,11 @@ def _overlaps(model: Model, state: State) -> list[str]:
             one, other = (atom_name(int(atoms[deepest]), model.groups) for atoms in (first, second))
             overlap = "1 pair overlaps" if first.size == 1 else f"{first.size} pairs overlap"
             warnings.append(
-                f"{table.origin}: {overlap} at the start, most {one} and {other} "
-                f"{np.sqrt(squared[deepest]):.3g} apart (contact is at 2); that releases the energy {energy:.3g}; "
-                f"move them apart, or leave them out {_without(table, first, second)}"
+                f"{table.origin}: {overlap} at the start ({', '.join(overlapping_groups(model, first, second))}), most "
+                f"{one} and {other} {np.sqrt(squared[deepest]):.3g} apart (contact is at 2); that releases the energy "
+                f"{energy:.3g}; move them apart{without_overlaps(model, table, first, second)}"
             )
     return warnings
-
-
-def _without(table: CollisionTable, first: Indices, second: Indices) -> str:
-    """Say how to leave pairs out of a table: by the `min_gap` just above theirs, where it leaves any pair at all."""
-    blocks = [block for block in table.blocks if isinstance(block, Within)]
-    min_gap = 1 + max((_widest_gap(block.atoms, first, second) for block in blocks), default=0)
-    if len(blocks) == len(table.blocks) and any(block.atoms.size > min_gap for block in blocks):
-        return f"with `min_gap: {min_gap}`"
-    return "of the collision"
-
-
-def _widest_gap(atoms: Indices, first: Indices, second: Indices) -> int:
-    """Return how many places of a selection lie between the two atoms of a pair, at most; 0 if it holds no pair."""
-    inside = np.isin(first, atoms) & np.isin(second, atoms)
-    gap = np.searchsorted(atoms, second[inside]) - np.searchsorted(atoms, first[inside])
-    return int(gap.max(initial=0))
 
 
 def _idle_torques(model: Model, state: State) -> list[str]:

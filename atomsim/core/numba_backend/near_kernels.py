@@ -11,7 +11,7 @@ import numpy as np
 
 from atomsim.core.model import Floats, Indices
 from atomsim.core.numba_backend.jit import inner, kernel
-from atomsim.core.plans.records import Grids, NearPairs, Queries
+from atomsim.core.plans.records import Bound, Grids, NearPairs, Queries
 
 STRIDE_Y, STRIDE_Z = 73856093, 19349663
 """Spread rows of cells over the buckets; the cells of a row along x are neighbours there, as atoms of a block are."""
@@ -84,6 +84,10 @@ def find_near(position: Floats, cutoff: float, queries: Queries, grids: Grids, n
                 entry = _keep_partners(query, queries, grids, near.entry_partner, entry, end)
                 query += 1
             entry = _sort_distinct(near.entry_partner, first, entry)
+            if grids.bound.table_row[table] >= 0:
+                entry = _leave_out_bound(
+                    slot, grids.bound.table_row[table], grids.bound, near.entry_partner, first, entry
+                )
             if entry > first:
                 near.row_slot[row] = slot
                 near.row_first_entry[row] = first
@@ -164,6 +168,26 @@ def _sort_distinct(partner: Indices, first: int, end: int) -> int:
     kept = first
     for number in range(first, end):
         if kept == first or partner[kept - 1] != partner[number]:
+            partner[kept] = partner[number]
+            kept += 1
+    return kept
+
+
+@inner
+def _leave_out_bound(slot: int, row: int, bound: Bound, partner: Indices, first: int, end: int) -> int:
+    """Drop partners that are few bonds away; return the new end."""
+    twins, own = bound.twins[row], bound.twins[row, slot]
+    kept = first
+    for number in range(first, end):
+        low, high = bound.first_near[own], bound.first_near[own + 1]
+        wanted = twins[partner[number]]
+        while low < high:
+            middle = (low + high) // 2
+            if bound.near[middle] < wanted:
+                low = middle + 1
+            else:
+                high = middle
+        if low == bound.first_near[own + 1] or bound.near[low] != wanted:
             partner[kept] = partner[number]
             kept += 1
     return kept

@@ -6,11 +6,12 @@ apart may be skipped without changing a bit.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
+from atomsim.core.model import Between, BoundPairs, CollisionTable, Floats, Indices, Within
+from atomsim.core.pairs.bonded import are_bound, n_bound_between, n_bound_within
 from atomsim.core.pairs.near import distinct, near_pairs
 
 CONTACT_SQUARED = 4.0
@@ -32,9 +33,20 @@ def table_pairs_near(table: CollisionTable, position: Floats, cutoff: float) -> 
         found = [_block_pairs_near(block, position, cutoff) for block in table.blocks]
     except MemoryError as error:
         raise MemoryError(f"{table.origin}: {error}") from None
-    if len(table.blocks) == 1 and isinstance(table.blocks[0], Within):
-        return found[0]  # sorted as it is
-    n_atoms = position.shape[1]
+    first, second = found[0] if _is_sorted(table) else _joined(found, position.shape[1])
+    if table.bound is not None:
+        apart = ~are_bound(table.bound, first, second)
+        first, second = first[apart], second[apart]
+    return first, second
+
+
+def _is_sorted(table: CollisionTable) -> bool:
+    """Return whether the pairs of a table's blocks are canonical as they are found."""
+    return len(table.blocks) == 1 and isinstance(table.blocks[0], Within)
+
+
+def _joined(found: Sequence[tuple[Indices, Indices]], n_atoms: int) -> tuple[Indices, Indices]:
+    """Join the pairs of several blocks, each once, sorted."""
     key = distinct([first * n_atoms + second for first, second in found])
     first = key // n_atoms
     return first, key - first * n_atoms
@@ -73,7 +85,15 @@ def as_index(atoms: Indices) -> slice | Indices:
 
 def n_collision_pairs(table: CollisionTable) -> int:
     """Return how many pairs a table declares; those in several blocks are counted in each."""
-    return sum(_n_block_pairs(block) for block in table.blocks)
+    n_bound = 0 if table.bound is None else sum(_n_bound_pairs(block, table.bound) for block in table.blocks)
+    return sum(_n_block_pairs(block) for block in table.blocks) - n_bound
+
+
+def _n_bound_pairs(block: Within | Between, bound: BoundPairs) -> int:
+    """Return how many pairs of a block do not collide because they are bound."""
+    if isinstance(block, Within):
+        return n_bound_within(bound, block.atoms, block.min_gap)
+    return n_bound_between(bound, block.left, block.right)
 
 
 def _n_block_pairs(block: Within | Between) -> int:

@@ -167,7 +167,7 @@ def _by_cells(left: Floats, right: Floats | None, cutoff: float) -> Iterator[Fou
     for start, run in runs:
         for band in _bands(run):
             count = run[band]
-            place = _ragged_ranges(start[band], count)
+            place = ragged_ranges(start[band], count)
             n_seen += place.size
             here = np.repeat(firsts.position[:, band], count, axis=1)
             near = np.flatnonzero(squared_distance(here, np.take(seconds.position, place, axis=1)) < cutoff * cutoff)
@@ -228,7 +228,7 @@ def _bands(count: Indices) -> Iterator[slice]:
         start = stop
 
 
-def _ragged_ranges(start: Indices, count: Indices) -> Indices:
+def ragged_ranges(start: Indices, count: Indices) -> Indices:
     """Concatenate the ranges start[i] … start[i] + count[i] − 1."""
     before = np.cumsum(count) - count
     ranges: Indices = np.arange(int(count.sum())) + np.repeat(start - before, count)

@@ -12,8 +12,9 @@ from itertools import accumulate
 
 import numpy as np
 
-from atomsim.core.model import Between, CollisionTable, Indices, Within
-from atomsim.core.plans.records import Grids, NearPairs, Queries
+from atomsim.core.model import Between, BoundPairs, CollisionTable, Indices, Within
+from atomsim.core.pairs.bonded import first_near
+from atomsim.core.plans.records import Bound, Grids, NearPairs, Queries
 
 FEW = 24
 """So few atoms look at all others, or are all looked at, in less time than sorting into buckets takes."""
@@ -55,7 +56,24 @@ def plan_grids(tables: Sequence[CollisionTable], margin: int) -> Grids:
         item_slot=np.zeros(first_target[-1], dtype=np.int64),
         item_tag=np.zeros(first_target[-1], dtype=np.int64),
         item_position=np.zeros((3, first_target[-1])),
+        bound=_plan_bound(tables, margin),
     )
+
+
+def _plan_bound(tables: Sequence[CollisionTable], margin: int) -> Bound:
+    """Lay out which pairs do not collide; tables that leave out the same pairs share a row."""
+    rows: list[BoundPairs] = []
+    table_row = np.full(len(tables), -1)
+    for number, table in enumerate(tables):
+        if table.bound is not None:
+            if not any(row is table.bound for row in rows):
+                rows.append(table.bound)
+            table_row[number] = next(place for place, row in enumerate(rows) if row is table.bound)
+    before = _firsts([row.n_sets for row in rows])
+    twins = [np.pad(row.twins + start, margin) for row, start in zip(rows, before[:-1], strict=True)]
+    near = [row.sets_near % row.n_sets + start for row, start in zip(rows, before[:-1], strict=True)]
+    n_near = np.concatenate([[0], *(np.diff(first_near(row)) for row in rows)])
+    return Bound(table_row, np.array(twins, dtype=np.int64, ndmin=2), np.cumsum(n_near), _joined(near))
 
 
 def _n_buckets(n_asking: int, n_targets: int) -> int:

@@ -87,6 +87,22 @@ class Queries(NamedTuple):
     cost: Floats
 
 
+class Bound(NamedTuple):
+    """Which atoms are too few bonds apart to collide, by sets of twins; see `BoundPairs`.
+
+    Attributes:
+        table_row: which row of `twins` a collision table goes by, or −1 where bonds make no difference, (n_tables,).
+        twins: the set of each slot's atom, (n_rows, n_slots).
+        first_near: (n_sets + 1,); sets are numbered through all rows.
+        near: the sets near each set, ascending.
+    """
+
+    table_row: Indices
+    twins: Indices
+    first_near: Indices
+    near: Indices
+
+
 class Grids(NamedTuple):
     """Sets of atoms that are looked for by place: each is sorted into buckets by the cell of space an atom is in.
 
@@ -103,6 +119,7 @@ class Grids(NamedTuple):
         item_slot: the targets of each grid in order of buckets.
         item_tag: their tags.
         item_position: their positions [length], (3, n_targets).
+        bound: which of the pairs that are found do not collide.
     """
 
     first_target: Indices
@@ -116,6 +133,7 @@ class Grids(NamedTuple):
     item_slot: Indices
     item_tag: Indices
     item_position: Floats
+    bound: Bound
 
 
 class NearPairs(NamedTuple):

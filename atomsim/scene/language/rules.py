@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import Count, Declaration, Pair, Positive, Rest, Round, Selection
@@ -81,6 +81,24 @@ class ListedBonds(BondBetweenBase):
     """[[i, k], …]: indices into `within`, or the first into A and the second into B of `between: [A, B]`."""
 
 
+def _check_except_bound(value: Any) -> Any:
+    if isinstance(value, bool) or (isinstance(value, int) and 1 <= value <= FURTHEST_BOUND):
+        return value
+    raise PydanticCustomError("except_bound", f"needs true, false or a whole number from 1 to {FURTHEST_BOUND}")
+
+
+FURTHEST_BOUND = 20
+"""So many bonds apart pairs may be left out at most: a thread whose atoms are 0.1 apart overlaps itself as far."""
+
+ExceptBound = Annotated[
+    bool | int,
+    Field(title="true or whole number ≥ 1"),
+    BeforeValidator(_check_except_bound),
+    WithJsonSchema({"anyOf": [{"type": "boolean"}, {"type": "integer", "minimum": 1, "maximum": FURTHEST_BOUND}]}),
+]
+"""Up to how many bonds apart pairs are left out; `true` stands for 1."""
+
+
 Bonds = Annotated[
     AllPairsBonds | NeighbourBonds | DistanceThresholdBonds | ListedBonds,
     Field(discriminator="rule"),
@@ -98,6 +116,8 @@ class Collisions(Declaration):
     """Two groups: every atom of one collides with every atom of the other."""
     among: Annotated[tuple[Selection, ...], Field(strict=False, min_length=2)] | None = None
     """Two or more groups: atoms of different groups collide."""
+    except_bound: ExceptBound = False
+    """`true`: pairs that a bond joins do not collide; or a number N: nor do pairs up to N bonds apart."""
 
     @model_validator(mode="after")
     def _check_where(self) -> Collisions:
