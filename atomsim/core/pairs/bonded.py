@@ -14,7 +14,7 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from atomsim.core.memory import free_memory
+from atomsim.core.free_memory import free_memory
 from atomsim.core.model import BondTable, BoundPairs, Indices
 from atomsim.core.pairs.near import LARGE, distinct, ragged_ranges
 
