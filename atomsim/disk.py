@@ -7,12 +7,31 @@ import errno
 import fcntl
 import os
 import stat
+from dataclasses import dataclass
 from pathlib import Path
 
 from atomsim.errors import InputError, Remedy, RunError
 
 _NO_LOCKS_HERE = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP}
+_PIECE = 1 << 20
 _NO_HARD_LINKS_HERE = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK}
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """By what a file is known again that nobody has written to since: its size and when it was last written [ns]."""
+
+    size: int
+    written: int
+
+    @classmethod
+    def of(cls, path: Path) -> Stamp | None:
+        """Return the stamp of a file, or None where there is none."""
+        try:
+            found = path.stat()
+        except FileNotFoundError:
+            return None
+        return cls(found.st_size, found.st_mtime_ns)
 
 
 def beside(path: Path, suffix: str) -> Path:
@@ -60,6 +79,24 @@ def open_locked(path: Path, *, create: bool = False) -> int:
     return fd
 
 
+def begin_locked(path: Path) -> int:
+    """Open a file as `open_locked` does, empty; what was in it is lost, unless the file has another name, too.
+
+    A kill may leave it with two: between getting its final name and losing this one.
+    """
+    fd = open_locked(path, create=True)
+    try:
+        if os.fstat(fd).st_nlink > 1:
+            path.unlink()
+            os.close(fd)
+            fd = open_locked(path, create=True)
+        os.ftruncate(fd, 0)
+    except BaseException:
+        os.close(fd)
+        raise
+    return fd
+
+
 def _lock(fd: int, path: Path) -> None:
     in_use = RunError(f"{path}: another atomsim is writing it; wait for that to end", Remedy("rename"))
     try:
@@ -85,8 +122,14 @@ def write_all(fd: int, *parts: bytes | memoryview, at: int) -> int:
     return at
 
 
+def copy(source: int, target: int, n_bytes: int) -> None:
+    """Copy so many bytes from the beginning of one open file to that of another."""
+    for start in range(0, n_bytes, _PIECE):
+        write_all(target, os.pread(source, min(_PIECE, n_bytes - start), start), at=start)
+
+
 def publish(temporary: Path, path: Path) -> None:
-    """Give a finished file its name, unless something has that name already.
+    """Give a finished file its name for good, unless something has that name already.
 
     Raises:
         FileExistsError: something has.
@@ -99,8 +142,9 @@ def publish(temporary: Path, path: Path) -> None:
         if path.exists():
             raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path)) from None
         os.rename(temporary, path)  # noqa: PTH104 - the whole file speaks the system's language
-        return
-    temporary.unlink()
+    else:
+        temporary.unlink()
+    sync_folder(path.parent)
 
 
 def replace(temporary: Path, path: Path) -> None:

@@ -13,14 +13,15 @@ from types import TracebackType
 import numpy as np
 
 from atomsim.core.model import Frame, State
-from atomsim.disk import behind, is_protected
+from atomsim.disk import Stamp, behind, is_protected
 from atomsim.errors import InputError, Remedy, RunError
+from atomsim.trajectory.building import build, require_own
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal.form import SUFFIX, journal_path
 from atomsim.trajectory.journal.read import Journal
-from atomsim.trajectory.journal.write import JournalWriter
+from atomsim.trajectory.journal.write import JournalWriter, TamperedError
 from atomsim.trajectory.reader import Trajectory, is_trajectory
 from atomsim.trajectory.rows import fill, row_dtype
 
@@ -51,9 +52,11 @@ class Recorder:
     """
 
     def __init__(self, path: str | os.PathLike[str], header: Header, *, replace: bool = False) -> None:
-        path = check_target(path, replace=replace)
+        path = Path(path)
+        replaces = Stamp.of(path) if replace else None
+        check_target(path, replace=replace)
         with held():
-            writer = JournalWriter.begin(journal_path(path), header)
+            writer = JournalWriter.begin(journal_path(path), header, replaces)
             try:
                 writer.publish(replace=replace)
             except BaseException:
@@ -96,8 +99,9 @@ class Recorder:
                 if state is not None and state.round_index > header.rounds:
                     raise _done_already(path, state.round_index)
                 if has_journal:
+                    require_own(path, journal)
                     accept(header)
-                writer.cut(journal.whole)
+                writer.settle(journal)
             writer.go_on(header.rounds)
         except BaseException:
             writer.close()
@@ -159,7 +163,7 @@ class Recorder:
         """
         self._flush()
         self._writer.end(end)
-        _build(self._writer, self.path)
+        build(self._writer, self.path)
         self._writer.remove()
         self._close()
 
@@ -167,7 +171,11 @@ class Recorder:
         if self._n_waiting:
             # Between the two lines, an interrupt would make the frames be written twice.
             with held():
-                self._writer.frames(self._block[: self._n_waiting])
+                try:
+                    self._writer.frames(self._block[: self._n_waiting])
+                except TamperedError:
+                    self._n_waiting = 0
+                    raise
                 self._n_waiting = 0
         self._last_write = time.monotonic()
 
@@ -188,20 +196,10 @@ def recover(path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path}: there is no journal {journal_path(path)} to recover it from")
     writer = JournalWriter.reopen(journal_path(path))
     try:
-        _build(writer, path)
+        build(writer, path)
         writer.remove()
     finally:
         writer.close()
-
-
-def _build(writer: JournalWriter, path: Path) -> None:
-    # Deferred because HDF5 takes longer to import than a small scene to run.
-    from atomsim.trajectory.hdf5.write import build
-
-    with reading(writer.path):
-        journal = writer.read()
-    with contextlib.closing(journal):
-        build(journal, path)
 
 
 def _trajectory_path(path: str | os.PathLike[str]) -> Path:
@@ -261,6 +259,7 @@ def _planned(header: Header, rounds: int | None) -> Header:
 
 def _turn_back(path: Path, rounds: int | None, accept: Callable[[Header], None]) -> None:
     """Write a finished file back into a journal, complete before it appears; the file itself stays as it is."""
+    replaces = Stamp.of(path)
     with Trajectory(path) as trajectory:
         last_round = int(trajectory.rounds[-1])
         header = _planned(trajectory.header, rounds)
@@ -269,7 +268,7 @@ def _turn_back(path: Path, rounds: int | None, accept: Callable[[Header], None])
         if last_round >= header.rounds:
             raise _done_already(path, last_round)
         accept(header)
-        writer = JournalWriter.begin(journal_path(path), trajectory.header)
+        writer = JournalWriter.begin(journal_path(path), trajectory.header, replaces)
         try:
             row = np.empty(1, row_dtype(trajectory.header.n_atoms, trajectory.header.memory))
             for frame in trajectory:

@@ -140,7 +140,7 @@ def folder(tmp_path: Path) -> Path:
 def test_a_run_reads_its_scenes_and_writes_its_trajectory(folder):
     code, seen = traced(folder, "run")
     assert code == 0
-    own = {str(folder / name) for name in ("out.h5", "out.h5.tmp", "out.h5.part", "out.h5.part.tmp")}
+    own = {str(folder / name) for name in ("out.h5", "out.h5.part", "out.h5.part.tmp", "out.h5.part.built")}
     assert {path for what, path in seen if what == "write"} == own
     assert {path for what, path in seen if what == "read"} - own - {str(folder)} == {
         str(folder / "s.yaml"),
@@ -164,7 +164,7 @@ def test_a_trick_runs_nothing_and_reads_nothing_else(folder, trick):
     (folder / "s.yaml").write_text(f"atomsim: 1\n{TRICKS[trick]}\n")
     code, seen = traced(folder, "run")
     assert code == (0 if trick == "title" else 2)
-    own = {str(folder / name) for name in ("out.h5", "out.h5.tmp", "out.h5.part", "out.h5.part.tmp", "s.yaml")}
+    own = {str(folder / name) for name in ("out.h5", "out.h5.part", "out.h5.part.tmp", "out.h5.part.built", "s.yaml")}
     assert {path for what, path in seen if what in ("read", "write")} - {str(folder)} <= own
     assert all(what in ("read", "write", "os.remove") for what, _ in seen), seen
     assert not (folder / "owned").exists()

@@ -17,14 +17,15 @@ class Sink:
     """A new file in the form that h5py takes; as a context manager it raises what went wrong, at the end.
 
     Args:
-        path: the file; what is there is overwritten.
+        path: the file; one that is there loses this name.
 
     Raises:
         OSError: the file cannot be opened.
     """
 
     def __init__(self, path: Path) -> None:
-        self._fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
+        path.unlink(missing_ok=True)  # it may be left from a kill, and the finished file under its second name
+        self._fd = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
         self._position = 0
         self._size = 0
         self._error: OSError | None = None

@@ -13,13 +13,10 @@ from typing import Any, TypeAlias
 import h5py
 import numpy as np
 
-from atomsim import disk
-from atomsim.errors import Remedy, RunError
 from atomsim.trajectory.document import contents_digest, document, fields, storable
 from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
 from atomsim.trajectory.hdf5.sink import Sink
 from atomsim.trajectory.interrupts import held
-from atomsim.trajectory.journal.form import journal_path
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES
 
@@ -27,44 +24,13 @@ Group: TypeAlias = Any  # h5py has no types
 Dataset: TypeAlias = Any
 
 
-def build(journal: Journal, path: Path) -> None:
-    """Build the HDF5 file `path`, or the one behind that link, from its journal.
-
-    What stood under the name stays until the new file is complete.
-
-    Safe to repeat and to kill. The journal is left to the caller, who must hold its lock.
+def write(journal: Journal, path: Path) -> None:
+    """Write everything that is in a journal to a new HDF5 file, and see that it is on the disk.
 
     Raises:
-        RunError: there is no frame, or the file cannot be written; the message says where the frames are.
+        OSError: the disk does not take it.
     """
-    if len(journal.series) == 0:
-        raise RunError(
-            f"{path}: nothing to build: its journal {journal_path(path).name} holds no frame yet", Remedy("begin", path)
-        )
-    target = disk.behind(path)
-    temporary = disk.beside(target, ".tmp")
-    try:
-        try:
-            _write(journal, temporary)
-            disk.replace(temporary, target)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
-    except OSError as error:
-        raise _unwritten(path, error) from error
-
-
-def _unwritten(path: Path, error: OSError) -> RunError:
-    """Say where the frames are now."""
-    facts = f"{path}: cannot be written: {error.strerror}"
-    journal = journal_path(path)
-    if journal.exists():
-        return RunError(f"{facts}; all frames are safe in {journal}: make room first", Remedy("recover", path))
-    return RunError(f"{facts}; its folder or its journal is gone, and the frames with it")
-
-
-def _write(journal: Journal, temporary: Path) -> None:
-    with Sink(temporary) as sink, held() as let_interrupts_through:
+    with Sink(path) as sink, held() as let_interrupts_through:
 
         def between_pieces() -> None:
             sink.check()

@@ -8,6 +8,8 @@ A journal is a series of records: a prefix (kind, length and CRC-32) and that ma
     end      the end of the run as JSON
     go on    the run goes on after a stop: JSON with the rounds now planned. It takes back the end, and the last
              frame if the run as now planned would not have recorded that round.
+    replaces a finished file that the one to be built may replace: JSON with its size and when it was last written.
+             There may be several; any other file is somebody else's.
 
 So resuming only appends too, and a reader stops before the first record that is torn or damaged. This file knows the
 form, not how a journal is written, read or built into the finished file.
@@ -23,6 +25,7 @@ from atomsim.disk import behind, beside
 from atomsim.errors import InputError
 
 HEAD, BONDS, FRAMES, END, GO_ON = b"atom.hea", b"atom.bon", b"atom.fra", b"atom.end", b"atom.goo"
+REPLACES = b"atom.rep"
 """The kinds of record; the first also tells that a file is a journal."""
 
 PREFIX = struct.Struct("<8sQI")

@@ -14,10 +14,11 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from atomsim.core.model import State
+from atomsim.disk import Stamp
 from atomsim.trajectory.document import check_version, end_from, header_from
 from atomsim.trajectory.guard import DamageError, check_room
 from atomsim.trajectory.header import End, Header
-from atomsim.trajectory.journal.form import BONDS, END, FRAMES, GO_ON, HEAD, PREFIX, checksum_start
+from atomsim.trajectory.journal.form import BONDS, END, FRAMES, GO_ON, HEAD, PREFIX, REPLACES, checksum_start
 from atomsim.trajectory.rows import SERIES, Rows, Series, check_rounds, memory_of, row_dtype, state_of
 
 Record: TypeAlias = tuple[bytes, int, int]
@@ -42,8 +43,10 @@ class Journal:
         header: with the rounds planned last.
         series: what is known of each frame besides its atoms.
         end: how the run ended; `killed` if nobody said.
+        replaceable: finished files that the one to be built may replace.
         whole: where the last whole record ends [bytes].
-        lost: bytes after it, of a record that is torn or damaged.
+        lost: bytes after it, of a record that is torn or damaged, or that only a later version understands.
+        is_later: whether it is the latter, which must not be cut off.
     """
 
     def __init__(self, fd: int) -> None:
@@ -57,6 +60,11 @@ class Journal:
             self.close()
             raise
         self.lost = self._size - self.whole
+
+    @property
+    def last_round(self) -> int:
+        """The round of the last frame; −1 without any."""
+        return int(self.series["round"][-1]) if len(self.series) else -1
 
     def close(self) -> None:
         """Close the file."""
@@ -89,15 +97,20 @@ class Journal:
 
     def _read_rest(self, records: Iterator[Record]) -> None:
         self.end = End("killed")
+        self.replaceable: frozenset[Stamp] = frozenset()
+        self.is_later = False
         blocks: list[range] = []
         for kind, start, length in records:
             if kind == FRAMES and length and length % self._dtype.itemsize == 0:
                 blocks.append(range(start, start + length, self._dtype.itemsize))
             elif kind == END:
                 self.end = end_from(json.loads(self._bytes(start, length)))
+            elif kind == REPLACES:
+                self.replaceable |= {Stamp(**json.loads(self._bytes(start, length)))}
             elif kind == GO_ON:
                 self._go_on(int(json.loads(self._bytes(start, length))["rounds"]), blocks)
             else:
+                self.is_later = kind != FRAMES
                 break
             self.whole = start + length
         check_room(sum(map(len, blocks)) * SERIES.itemsize)

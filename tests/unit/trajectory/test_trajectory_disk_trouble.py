@@ -143,8 +143,7 @@ def test_a_folder_that_vanishes(tmp_path: Path) -> None:
         with pytest.raises(RunError) as caught:
             recording.finish(End("finished"))
     assert str(caught.value) == (
-        f"{folder / 'out.h5'}: cannot be written: No such file or directory; "
-        "its folder or its journal is gone, and the frames with it"
+        f"{folder / 'out.h5.part'}: removed by another program, and so are its frames: No such file or directory"
     )
 
 

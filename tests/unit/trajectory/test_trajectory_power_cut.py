@@ -61,13 +61,15 @@ def diary(tmp_path: Path) -> Iterator[Diary]:
 
 BEGUN = ["sync out.h5.part.tmp", "name out.h5.part.tmp out.h5.part", "remove out.h5.part.tmp", "sync the folder"]
 ENDED = ["sync out.h5.part"]
-BUILT = ["sync out.h5.tmp", "name out.h5.tmp out.h5", "sync the folder", "remove out.h5.part"]
+BUILT = ["sync out.h5.part.built", "sync out.h5.part", "name out.h5.part.built out.h5"]
+NEW = ["remove out.h5.part.built", "sync the folder", "remove out.h5.part"]
+REPLACED = ["sync the folder", "remove out.h5.part"]
 
 
 def test_a_run_from_its_beginning_to_its_file(tmp_path: Path, diary: Diary) -> None:
     """The journal goes last: until then, every frame is in a file that has its name."""
     record(tmp_path / "out.h5", header())
-    assert diary.entries == BEGUN + ENDED + BUILT
+    assert diary.entries == BEGUN + ENDED + BUILT + NEW
 
 
 def test_a_run_that_replaces_a_journal(tmp_path: Path, diary: Diary) -> None:
@@ -75,7 +77,7 @@ def test_a_run_that_replaces_a_journal(tmp_path: Path, diary: Diary) -> None:
     assert diary.entries == BEGUN
     record(tmp_path / "out.h5", header(), replace=True)
     replaced = ["sync out.h5.part.tmp", "name out.h5.part.tmp out.h5.part", "sync the folder"]
-    assert diary.entries[len(BEGUN) :] == replaced + ENDED + BUILT
+    assert diary.entries[len(BEGUN) :] == replaced + ENDED + BUILT + NEW
 
 
 def test_a_finished_run_that_goes_on(tmp_path: Path, diary: Diary) -> None:
@@ -85,11 +87,11 @@ def test_a_finished_run_that_goes_on(tmp_path: Path, diary: Diary) -> None:
     with Recorder.resume(path, rounds=40) as recording:
         assert diary.entries == BEGUN
         go_on(recording)
-    assert diary.entries == BEGUN + ENDED + BUILT
+    assert diary.entries == BEGUN + ENDED + BUILT + REPLACED
 
 
 def test_a_journal_that_is_recovered(tmp_path: Path, diary: Diary) -> None:
     killed(tmp_path / "out.h5", header(), 20)
     diary.entries.clear()
     recover(tmp_path / "out.h5")
-    assert diary.entries == BUILT
+    assert diary.entries == BUILT + NEW
