@@ -6,6 +6,8 @@ In a notebook:
     model, state = atomsim.compile(loaded)               # flat force tables and the first state
     for frame in atomsim.simulate(model, state, 1000):   # frame by frame
         ...
+    simulation = atomsim.Simulation(loaded)              # or step by step
+    simulation.step(10)
     atomsim.run(loaded, "out.h5")                        # or record a whole run
     with atomsim.Trajectory("out.h5") as trajectory:     # a sequence of frames
         trajectory[-1].position
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from atomsim.scene.loader import LoadedScene, load, loads
     from atomsim.tasks.render import render, render_frames
     from atomsim.tasks.run import resume, run
+    from atomsim.tasks.simulation import SceneSimulation as Simulation
     from atomsim.trajectory import Trajectory
 
 _HOMES = {
@@ -39,6 +42,7 @@ _HOMES = {
     "Model": "atomsim.core.model",
     "RunError": "atomsim.errors",
     "SceneError": "atomsim.errors",
+    "Simulation": "atomsim.tasks.simulation:SceneSimulation",
     "State": "atomsim.core.model",
     "Trajectory": "atomsim.trajectory",
     "load": "atomsim.scene.loader",
@@ -59,6 +63,7 @@ __all__ = [
     "Model",
     "RunError",
     "SceneError",
+    "Simulation",
     "State",
     "Trajectory",
     "compile",
@@ -82,4 +87,5 @@ def compile(loaded: LoadedScene) -> tuple[Model, State]:
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'atomsim' has no attribute '{name}'")
-    return getattr(import_module(_HOMES[name]), name)
+    module, _, its_name = _HOMES[name].partition(":")
+    return getattr(import_module(module), its_name or name)

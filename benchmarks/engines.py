@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 
-from atomsim.core.simulate import MakeStepper
+from atomsim.core.backend import MakeStepper
 
 
 @dataclass(frozen=True, slots=True)

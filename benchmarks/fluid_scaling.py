@@ -6,9 +6,9 @@ from functools import partial
 from importlib.util import find_spec
 from typing import NamedTuple
 
+from atomsim.core.backend import MakeStepper
 from atomsim.core.model import Model, State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
-from atomsim.core.simulate import MakeStepper
 from benchmarks.fluid import free_fluid
 from benchmarks.tables import MISSING, Answer, Table, below, significant
 from benchmarks.timing import Results, in_turns, spread

@@ -9,9 +9,10 @@ from importlib.util import find_spec
 from typing import TypeVar
 
 from atomsim.compiler import compile_scene
+from atomsim.core.backend import Stepper
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
-from atomsim.core.simulate import Stepper, frame_of
+from atomsim.core.simulation import frame_of
 from atomsim.scene.language import Scene
 from benchmarks.tables import Answer, Table, below, significant
 from benchmarks.timing import Results
@@ -37,7 +38,7 @@ def measure(quick: bool) -> Results:
     )
     memory = _Memory()
     model, state = memory.of("compiling the scene", lambda: compile_scene(scene))
-    memory.of("measuring a frame", lambda: frame_of(model, state, Observer(model)))
+    memory.of("measuring a frame", lambda: frame_of(model, state, Observer(model).observe(state)))
     memory.of("NumPy: one round", lambda: _one_round(NumpyStepper(model, state)))
     if find_spec("numba"):
         from atomsim.core.numba_backend.stepper import NumbaStepper

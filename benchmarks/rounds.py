@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from atomsim.compiler import compile_scene
+from atomsim.core.backend import MakeStepper, Stepper
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Model, State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
-from atomsim.core.simulate import MakeStepper, Stepper
 from atomsim.scene import load
 from benchmarks.engines import ENGINES, NUMBA, NUMPY, PLAIN, Engine
 from benchmarks.pairs import pair_table

@@ -8,15 +8,32 @@ from __future__ import annotations
 
 import importlib.util
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Protocol
 
-from atomsim.core.model import Model
+from atomsim.core.model import Floats, Model, State
 from atomsim.core.numba_backend import cache
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.pairs.collisions import involved_atoms
-from atomsim.core.simulate import MakeStepper
 from atomsim.errors import InputError, Remedy
+
+
+class Stepper(Protocol):
+    """What a backend does: it advances one state of one model, always to the same bits."""
+
+    def advance(self, n_rounds: int) -> None:
+        """Compute so many iteration rounds."""
+
+    def set_forces(self, impulse: Floats | None) -> None:
+        """Add an impulse to each atom in every round to come, (n_atoms, 3); None for nothing. It is copied."""
+
+    def state(self) -> State:
+        """Return a copy of the present state."""
+
+
+MakeStepper = Callable[[Model, State], Stepper]
 
 BACKENDS = ("auto", "numpy", "numba")
 

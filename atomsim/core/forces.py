@@ -9,6 +9,7 @@ from typing import assert_never
 import numpy as np
 
 from atomsim.core.model import (
+    ActingForce,
     DampingForce,
     ExternalForce,
     Floats,
@@ -51,12 +52,13 @@ def held_atoms(forces: Sequence[ExternalForce]) -> Indices:
     return distinct([force.atoms for force in forces if isinstance(force, HoldForce)])
 
 
-def prepare_forces(forces: Sequence[ExternalForce]) -> list[Apply]:
-    """Return what to call, in order, in every round; `hold` comes last whatever its place."""
-    return [_prepare(force) for force in sorted(forces, key=lambda force: isinstance(force, HoldForce))]
+def acting(forces: Sequence[ExternalForce]) -> list[ActingForce]:
+    """Return the forces that change the impulse, in the order in which they do; what is held is held after them all."""
+    return [force for force in forces if not isinstance(force, HoldForce)]
 
 
-def _prepare(force: ExternalForce) -> Apply:
+def prepare(force: ActingForce) -> Apply:
+    """Return what to call in every round."""
     match force:
         case DampingForce():
             return _damping(force)
@@ -68,8 +70,6 @@ def _prepare(force: ExternalForce) -> Apply:
             return _torque(force)
         case TetherForce():
             return _tether(force)
-        case HoldForce():
-            return _hold(force)
         case _:
             assert_never(force)
 
@@ -134,15 +134,5 @@ def _tether(force: TetherForce) -> Apply:
         squared = (difference[0] * difference[0] + difference[1] * difference[1]) + difference[2] * difference[2]
         squared[squared == 0.0] = np.inf
         impulse[:, atoms] += (1.0 - force.rest_squared * (1.0 / squared)) * difference
-
-    return apply
-
-
-def _hold(force: HoldForce) -> Apply:
-    """j ← 0, exactly opposite to everything else (paper section 5)."""
-    atoms = as_index(force.atoms)
-
-    def apply(_: int, __: Floats, ___: Floats, impulse: Floats) -> None:
-        impulse[:, atoms] = 0.0
 
     return apply

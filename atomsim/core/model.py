@@ -172,7 +172,8 @@ class HoldForce:
     atoms: Indices
 
 
-ExternalForce: TypeAlias = DampingForce | PushForce | OscillateForce | TorqueForce | TetherForce | HoldForce
+ActingForce: TypeAlias = DampingForce | PushForce | OscillateForce | TorqueForce | TetherForce
+ExternalForce: TypeAlias = ActingForce | HoldForce
 
 
 @dataclass(frozen=True, slots=True, eq=False)

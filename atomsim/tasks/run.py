@@ -204,7 +204,7 @@ def _record(recorder: Recorder, model: Model, first: State, backend: Backend, re
 
     try:
         for frame in simulate(
-            model, state, header.rounds, header.record_every, backend.make_stepper, report_round, first=first
+            model, state, header.rounds, header.record_every, backend.make_stepper, report=report_round, first=first
         ):
             if not is_recorded:
                 recorder.append(frame)

@@ -13,7 +13,7 @@ from atomsim.core.diagnosis.blowup import FLOWN_APART, explain, is_sound, loss
 from atomsim.core.diagnosis.energy import EnergyBudget, total_energy
 from atomsim.core.model import Model, State
 from atomsim.core.observables import Observer
-from atomsim.core.simulate import frame_of, simulate
+from atomsim.core.simulate import simulate
 from atomsim.errors import BlowUpError
 
 PAIR = {"calm": atoms_at((0, 0, 9)), "pair": atoms_at((0, 0, 0), (1.5, 0, 0))}
@@ -192,5 +192,5 @@ def test_what_observables_tell_is_what_atoms_tell(what: str, number: float) -> N
     model, state = state_with(number, what)
     _, sound = state_with(0.0, "position")
     budget = EnergyBudget(model, sound, Observer(model).observe(sound))
-    is_lost = loss(frame_of(model, state, Observer(model)), model, budget) == "flew off"
+    is_lost = loss(model, state, Observer(model).observe(state), budget) == "flew off"
     assert is_lost != is_sound(model, state)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.running import after, atoms_at, compiled
 
-from atomsim.core.forces import held_atoms, prepare_forces, quantise
+from atomsim.core.forces import acting, held_atoms, prepare, quantise
 from atomsim.core.model import Floats
 
 PLACES: list[tuple[float, float, float]] = [(1, 0, 0), (0, 2, 0.5), (-1, -1, 3)]
@@ -18,9 +18,11 @@ PLACES: list[tuple[float, float, float]] = [(1, 0, 0), (0, 2, 0.5), (-1, -1, 3)]
 def impulse(round_index: int = 0, velocity: Floats | None = None, **force: Any) -> Floats:
     """Return what a force adds to three atoms in a round, (3, 3), one row per atom."""
     model, state = compiled({"a": atoms_at(*PLACES)}, forces={"f": force})
-    (apply,) = prepare_forces(model.forces)
+    (force_on_them,) = acting(model.forces)
     total = np.zeros((3, 3))
-    apply(round_index, state.position.T.copy(), np.zeros((3, 3)) if velocity is None else velocity.T.copy(), total)
+    prepare(force_on_them)(
+        round_index, state.position.T.copy(), np.zeros((3, 3)) if velocity is None else velocity.T.copy(), total
+    )
     return total.T
 
 

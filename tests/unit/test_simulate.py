@@ -33,7 +33,7 @@ def test_frames_are_the_first_the_multiples_and_the_last() -> None:
 
 def test_reports_do_not_cut_short_stretches_ever_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
     """Frames end a stretch; the next one begins as long as stretches have proved to be quick."""
-    monkeypatch.setattr("atomsim.core.simulate.REPORT_SECONDS", 1e9)
+    monkeypatch.setattr("atomsim.core.pace.REPORT_SECONDS", 1e9)
     model, state = falling()
     heard: list[int] = []
     for _ in simulate(model, state, 40, 10, report=heard.append):
@@ -44,7 +44,7 @@ def test_reports_do_not_cut_short_stretches_ever_shorter(monkeypatch: pytest.Mon
 def test_a_slow_stretch_makes_the_next_ones_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
     """A round takes 0.03 s by this clock: four are too many for a tenth of a second."""
     clock = [0.0]
-    monkeypatch.setattr("atomsim.core.simulate.time.perf_counter", lambda: clock[0])
+    monkeypatch.setattr("atomsim.core.pace.time.perf_counter", lambda: clock[0])
 
     class Slow(NumpyStepper):
         def advance(self, n_rounds: int) -> None:
@@ -53,7 +53,7 @@ def test_a_slow_stretch_makes_the_next_ones_shorter(monkeypatch: pytest.MonkeyPa
 
     model, state = falling()
     heard: list[int] = []
-    for _ in simulate(model, state, 15, 100, Slow, heard.append):
+    for _ in simulate(model, state, 15, 100, Slow, report=heard.append):
         pass
     assert heard == [0, 1, 3, 7, 9, 13, 15]
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from atomsim.core.diagnosis.energy import SLACK, EnergyBudget, total_energy
 from atomsim.core.diagnosis.stiffness import is_damped_too_much, largest_time_step
-from atomsim.core.forces import prepare_forces
-from atomsim.core.model import Floats, Frame, Indices, Model, Observables, Origin, State, atom_name
+from atomsim.core.forces import acting, prepare
+from atomsim.core.model import Floats, Indices, Model, Observables, Origin, State, atom_name
 from atomsim.core.pairs.collisions import CONTACT_SQUARED, table_pairs_near
 from atomsim.core.pairs.near import pair_squares, squared_distance
 
@@ -18,11 +18,19 @@ FLOWN_APART = 1e6
 """An atom that moves further than this in one round [length] is no longer part of anything."""
 
 
-def loss(frame: Frame, model: Model, budget: EnergyBudget) -> str | None:
-    """Return what is wrong with the fastest atom of a frame, or None while the run is sound."""
-    if not (_is_surely_sound(model, frame.observables) or is_sound(model, frame.state)):
+def loss(model: Model, state: State, observables: Observables, budget: EnergyBudget, driven: float = 0.0) -> str | None:
+    """Return what is wrong with the fastest atom of a state, or None while the run is sound.
+
+    Args:
+        model: the compiled scene.
+        state: what was reached.
+        observables: what was measured of it.
+        budget: how much energy the scene accounts for.
+        driven: Σ |G| over all rounds in which atoms were pushed from outside; see `EnergyBudget.at`.
+    """
+    if not (_is_surely_sound(model, observables) or is_sound(model, state)):
         return "flew off"
-    energy, explained = total_energy(frame.observables), budget.at(frame.round_index)
+    energy, explained = total_energy(observables), budget.at(state.round_index, driven)
     if energy <= explained:
         return None
     return f"is the fastest, and the energy is {energy:.3g}, where the scene accounts for {explained / SLACK:.3g}"
@@ -44,7 +52,9 @@ def is_sound(model: Model, state: State) -> bool:
     return bool(fastest <= FLOWN_APART) and bool(np.isfinite(state.position).all())
 
 
-def explain(model: Model, first: State, before: State, after: State, lost: str = "flew off") -> str:
+def explain(
+    model: Model, first: State, before: State, after: State, lost: str = "flew off", forces: Floats | None = None
+) -> str:
     """Say what happened in the round from a sound state to one that is not.
 
     Args:
@@ -53,6 +63,7 @@ def explain(model: Model, first: State, before: State, after: State, lost: str =
         before: the last sound state.
         after: the state one round later.
         lost: what is wrong with its fastest atom.
+        forces: what pushed the atoms from outside, (n_atoms, 3).
 
     Returns:
         A few lines: round, atom and group; the declaration that pushed it hardest, and against which atom; the largest
@@ -63,12 +74,23 @@ def explain(model: Model, first: State, before: State, after: State, lost: str =
         if met is not None:
             return met
         atom = _first_lost(after)
-        size, origin, partner = max(_pushes(model, before, atom), key=lambda push: push[0], default=(0.0, None, None))
+        pushes = _pushes(model, before, atom, forces)
+        size, origin, partner = max(pushes, key=lambda push: push[0], default=(0.0, None, None))
     lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} {lost}"]
     if origin is not None:
         against = f", against {atom_name(partner, model.groups)}" if partner is not None else ""
         lines.append(f"  pushed hardest by {origin}{against}, with an impulse of {size:.3g} in one round")
     return "\n".join([*lines, *_remedy(model, first, before)])
+
+
+def not_again(model: Model, before: State, after: State, lost: str) -> str:
+    """Say that what was lost between two states was not when the same rounds were computed again."""
+    name = atom_name(_first_lost(after), model.groups)
+    return (
+        f"the simulation blew up between rounds {before.round_index} and {after.round_index}: {name} {lost}\n"
+        "  these rounds were computed again, and nothing of it came back: the same sums had two results\n"
+        "  remedy: run it again; if that helps now and then only, have the memory of this machine tested"
+    )
 
 
 def _remedy(model: Model, first: State, before: State) -> list[str]:
@@ -115,7 +137,9 @@ def _meeting(model: Model, state: State) -> str | None:
     return None
 
 
-def _pushes(model: Model, state: State, atom: int) -> Iterator[tuple[float, Origin, int | None]]:
+def _pushes(
+    model: Model, state: State, atom: int, forces: Floats | None
+) -> Iterator[tuple[float, Origin | str, int | None]]:
     """Yield the strongest single force of every declaration on an atom: its size, where from, and the partner."""
     position = np.ascontiguousarray(state.position.T)
     velocity = np.ascontiguousarray(state.velocity.T)
@@ -125,11 +149,12 @@ def _pushes(model: Model, state: State, atom: int) -> Iterator[tuple[float, Orig
         first, second = table_pairs_near(collision, position, 2.0)
         rest_squared = np.full(first.size, CONTACT_SQUARED)
         yield from _strongest(collision.origin, position, atom, first, second, rest_squared)
-    for force in model.forces:
+    for force in acting(model.forces):
         impulse = np.zeros_like(position)
-        for apply in prepare_forces([force]):
-            apply(state.round_index, position, velocity, impulse)
+        prepare(force)(state.round_index, position, velocity, impulse)
         yield float(np.sqrt((impulse[:, atom] * impulse[:, atom]).sum())), force.origin, None
+    if forces is not None:
+        yield float(np.sqrt((forces[atom] * forces[atom]).sum())), "forces from outside", None
 
 
 def _strongest(

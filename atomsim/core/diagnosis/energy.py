@@ -41,6 +41,7 @@ class EnergyBudget:
 
     def __init__(self, model: Model, first: State, observables: Observables) -> None:
         self._begin = math.sqrt(2.0 * total_energy(observables)) if total_energy(observables) > 0.0 else 0.0
+        self._first_round = first.round_index
         self._trifle = TRIFLE * model.n_atoms
         push = np.zeros(model.n_atoms)
         self._is_known = True
@@ -60,11 +61,16 @@ class EnergyBudget:
         share = push / largest  # squares of the pushes themselves may not be finite
         self._push = largest * float(np.sqrt((share * share).sum()))
 
-    def at(self, round_index: int) -> float:
-        """Return the most energy that can be explained at a round."""
+    def at(self, round_index: int, driven: float = 0.0) -> float:
+        """Return the most energy that can be explained at a round.
+
+        Args:
+            round_index: the round.
+            driven: Σ |G| over all rounds in which atoms were pushed from outside, besides what the model does.
+        """
         if not self._is_known:
             return math.inf
-        root = self._begin + self._push * round_index
+        root = self._begin + self._push * (round_index - self._first_round) + driven
         return SLACK * 0.5 * root * root + self._trifle  # a power would raise where a product becomes infinite
 
 

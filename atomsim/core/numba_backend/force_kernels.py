@@ -15,9 +15,19 @@ from atomsim.core.plans.records import Forces
 
 @inner
 def add_forces(
-    forces: Forces, pushes: Floats, position: Floats, velocity: Floats, impulse: Floats, start: int, stop: int
+    forces: Forces,
+    pushes: Floats,
+    outside: Floats,
+    position: Floats,
+    velocity: Floats,
+    impulse: Floats,
+    start: int,
+    stop: int,
 ) -> None:
-    """Apply all forces, in order, to the slots start ≤ slot < stop; `pushes` is (n_forces, 3)."""
+    """Apply all forces, in order, to the slots start ≤ slot < stop.
+
+    `pushes` is (n_forces, 3); `outside`, what is added last, is (3, n_slots), or (3, 0) for nothing.
+    """
     for force in range(forces.kind.size):
         kind = forces.kind[force]
         number = forces.number[force]
@@ -36,9 +46,14 @@ def add_forces(
             elif kind == TETHER:
                 rest_squared = forces.rest_squared[forces.first_rest[run] + first - forces.run_start[run] :]
                 _tether(first, last, number, rest_squared, position, impulse)
-            else:
-                for component in range(3):
-                    impulse[component, first:last] = 0.0
+    if outside.shape[1]:
+        for component in range(3):
+            for slot in range(start, stop):
+                impulse[component, slot] += outside[component, slot]
+    for run in range(forces.held_start.size):
+        first, last = max(start, forces.held_start[run]), min(stop, forces.held_stop[run])
+        for component in range(3):
+            impulse[component, first:last] = 0.0
 
 
 @inner

@@ -26,6 +26,7 @@ def advance_rounds(
     bonds: Bonds,
     forces: Forces,
     pushes: Floats,
+    outside: Floats,
     near: NearPairs,
     watch: Watch,
     queries: Queries,
@@ -47,6 +48,7 @@ def advance_rounds(
         bonds: the bonds of the share.
         forces: forces from outside.
         pushes: what they add uniformly, per round ahead, (n_rounds, n_forces, 3).
+        outside: what is added to each atom besides, (3, n_slots), or (3, 0) for nothing.
         near: the near collision pairs of the share.
         watch: when and where they were found.
         queries: how to find them.
@@ -67,7 +69,7 @@ def advance_rounds(
             add_rows(table, bonds, here, impulse)
         for table in range(near.table_first_row.size - 1):
             _add_collisions(table, near, here, impulse)
-        add_forces(forces, pushes[number], here, velocity, impulse, start, stop)
+        add_forces(forces, pushes[number], outside, here, velocity, impulse, start, stop)
         for component in range(3):
             _move(
                 time_step,

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from atomsim.core.forces import held_atoms
+from atomsim.core.forces import acting, held_atoms
 from atomsim.core.free_memory import free_memory
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
@@ -17,7 +17,7 @@ from atomsim.core.numba_backend.round_kernels import MAKING_COST, advance_rounds
 from atomsim.core.pairs.collisions import involved_atoms
 from atomsim.core.pairs.near_list import SKIN, better_skin, widest_skin
 from atomsim.core.plans.bond_plan import plan_bonds
-from atomsim.core.plans.force_plan import Pushes, in_order, plan_forces, runs_of
+from atomsim.core.plans.force_plan import Pushes, plan_forces, runs_of
 from atomsim.core.plans.near_plan import empty_list, plan_grids, plan_queries
 from atomsim.core.plans.records import LANES, Forces, Grids, Motion, Watch
 
@@ -25,6 +25,7 @@ CALL_ATOM_ROUNDS = 1 << 21
 """Atoms times rounds computed in one call of a kernel, which nothing can interrupt: some tenths of a second."""
 
 _NONE = np.empty(0, dtype=np.int64)
+_NOTHING = np.empty((3, 0))
 
 Result = TypeVar("Result")
 
@@ -49,9 +50,10 @@ class NumbaStepper:
         self._memory = state.memory
         here = self._padded(state.position)
         self._motion = Motion(here, here.copy(), self._padded(state.velocity), np.zeros_like(here))
-        forces = in_order(model.forces)
-        self._forces = plan_forces(forces, self._margin)
+        forces = acting(model.forces)
+        self._forces = plan_forces(forces, held_atoms(model.forces), self._margin)
         self._pushes = Pushes(forces)
+        self._outside = _NOTHING
         widest, n_rounds = widest_skin(model.collisions), np.zeros(1, dtype=np.int64)
         self._watch = Watch(_NONE, _NONE, np.zeros_like(here), np.array([skin]), widest, n_rounds)
         self._is_stale = bool(model.collisions)
@@ -71,6 +73,10 @@ class NumbaStepper:
             if self._is_stale:
                 self._find_near_pairs()
             self._advance_at_most(stop - self._round_index)
+
+    def set_forces(self, impulse: Floats | None) -> None:
+        """Add an impulse to each atom in every round to come, (n_atoms, 3); None for nothing. It is copied."""
+        self._outside = _NOTHING if impulse is None else self._padded(impulse)
 
     def state(self) -> State:
         """Return a copy of the present state."""
@@ -105,7 +111,9 @@ class NumbaStepper:
         n_rounds = min(n_rounds, max(1, CALL_ATOM_ROUNDS // self._n_atoms)) if is_alone else 1
         pushes = self._pushes.ahead(self._round_index, n_rounds)
         done = self._for_each_share(
-            lambda share: share.advance(self._time_step, self._motion, self._forces, pushes, self._grids, is_alone)
+            lambda share: share.advance(
+                self._time_step, self._motion, self._forces, pushes, self._outside, self._grids, is_alone
+            )
         )
         self._is_stale = any(is_stale for _, is_stale in done)
         n_done = done[0][0]
@@ -162,7 +170,14 @@ class _Share:
             self._near = empty_list(self._queries, n_entries)
 
     def advance(
-        self, time_step: float, motion: Motion, forces: Forces, pushes: Floats, grids: Grids, is_alone: bool
+        self,
+        time_step: float,
+        motion: Motion,
+        forces: Forces,
+        pushes: Floats,
+        outside: Floats,
+        grids: Grids,
+        is_alone: bool,
     ) -> tuple[int, bool]:
         """Advance by one or more rounds; see `advance_rounds`."""
         return advance_rounds(
@@ -173,6 +188,7 @@ class _Share:
             self._bonds,
             forces,
             pushes,
+            outside,
             self._near,
             self._watch,
             self._queries,

@@ -9,11 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from atomsim.core.forces import held_atoms, prepare_forces
+from atomsim.core.forces import acting, held_atoms, prepare
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.numpy_backend.bond_forms import Scatter
 from atomsim.core.numpy_backend.bonds import bond_forms, joined
-from atomsim.core.pairs.collisions import CONTACT_SQUARED
+from atomsim.core.pairs.collisions import CONTACT_SQUARED, as_index
 from atomsim.core.pairs.near_list import NearList
 
 
@@ -27,9 +27,12 @@ class NumpyStepper:
 
     def __init__(self, model: Model, state: State) -> None:
         self._time_step = model.time_step
-        self._bonds = [bond_forms(table, held_atoms(model.forces)) for table in joined(model.bonds)]
+        held = held_atoms(model.forces)
+        self._bonds = [bond_forms(table, held) for table in joined(model.bonds)]
         self._near = NearList(model.collisions, model.n_atoms)
-        self._forces = prepare_forces(model.forces)
+        self._forces = [prepare(force) for force in acting(model.forces)]
+        self._outside: Floats | None = None
+        self._held = as_index(held) if held.size else None
         self._round_index = state.round_index
         self._position = np.array(state.position.T, order="C")  # a copy even of a single atom
         self._velocity = np.array(state.velocity.T, order="C")
@@ -42,6 +45,10 @@ class NumpyStepper:
         with np.errstate(all="ignore"):  # a blow-up is found, with the round and the atom, by whoever reads the state
             for _ in range(n_rounds):
                 self._advance_one_round()
+
+    def set_forces(self, impulse: Floats | None) -> None:
+        """Add an impulse to each atom in every round to come, (n_atoms, 3); None for nothing. It is copied."""
+        self._outside = None if impulse is None else np.array(impulse.T, order="C")
 
     def state(self) -> State:
         """Return a copy of the present state."""
@@ -59,6 +66,10 @@ class NumpyStepper:
         add_collisions(impulse, position, self._near)
         for apply in self._forces:
             apply(self._round_index, position, velocity, impulse)
+        if self._outside is not None:
+            impulse += self._outside
+        if self._held is not None:
+            impulse[:, self._held] = 0.0
         velocity += impulse
         np.multiply(velocity, self._time_step, out=self._step)
         position += self._step

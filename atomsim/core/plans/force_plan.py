@@ -9,10 +9,9 @@ import numpy as np
 
 from atomsim.core.forces import is_pushing, oscillation
 from atomsim.core.model import (
+    ActingForce,
     DampingForce,
-    ExternalForce,
     Floats,
-    HoldForce,
     Indices,
     OscillateForce,
     PushForce,
@@ -21,7 +20,7 @@ from atomsim.core.model import (
 )
 from atomsim.core.plans.records import Forces
 
-DAMPING, PUSH, TORQUE, TETHER, HOLD = range(5)
+DAMPING, PUSH, TORQUE, TETHER = range(4)
 """What `Forces.kind` holds; a push is any force that is the same vector for all its atoms."""
 
 AHEAD = 256
@@ -30,17 +29,13 @@ AHEAD = 256
 Numbers = tuple[float, ...]
 
 
-def in_order(forces: Sequence[ExternalForce]) -> list[ExternalForce]:
-    """Return forces in the order they are applied in: as declared, but `hold` last."""
-    return sorted(forces, key=lambda force: isinstance(force, HoldForce))
-
-
-def plan_forces(forces: Sequence[ExternalForce], margin: int) -> Forces:
-    """Lay out forces that are in order; slots begin at `margin`."""
+def plan_forces(forces: Sequence[ActingForce], held: Indices, margin: int) -> Forces:
+    """Lay out forces in their order, and the atoms that are held after them; slots begin at `margin`."""
     none = np.empty(0, dtype=np.int64)
     acts_on = [runs_of(force.atoms, margin) for force in forces]
     about = [runs_of(force.about if isinstance(force, TorqueForce) else none, margin) for force in forces]
     coded = [_code(force) for force in forces]
+    held_start, held_stop = runs_of(held, margin)
     rest_squared = [force.rest_squared if isinstance(force, TetherForce) else np.empty(0) for force in forces]
     first_rest = []
     n_rest = 0
@@ -58,10 +53,12 @@ def plan_forces(forces: Sequence[ExternalForce], margin: int) -> Forces:
         about_stop=np.concatenate([none, *(stop for _, stop in about)]),
         rest_squared=np.concatenate([np.empty(0), *rest_squared]),
         first_rest=np.concatenate([none, *first_rest]),
+        held_start=held_start,
+        held_stop=held_stop,
     )
 
 
-def _code(force: ExternalForce) -> tuple[int, Numbers]:
+def _code(force: ActingForce) -> tuple[int, Numbers]:
     """Return a force's kind and its constants."""
     match force:
         case DampingForce():
@@ -72,8 +69,6 @@ def _code(force: ExternalForce) -> tuple[int, Numbers]:
             return TORQUE, (*force.axis, force.magnitude, float(force.about.size))
         case TetherForce():
             return TETHER, force.target
-        case HoldForce():
-            return HOLD, ()
         case _:
             assert_never(force)
 
@@ -81,7 +76,7 @@ def _code(force: ExternalForce) -> tuple[int, Numbers]:
 class Pushes:
     """The vectors that forces add uniformly, computed for some rounds ahead."""
 
-    def __init__(self, forces: Sequence[ExternalForce]) -> None:
+    def __init__(self, forces: Sequence[ActingForce]) -> None:
         self._forces = forces
         self._rounds = range(0)
         self._vectors = np.empty((0, len(forces), 3))

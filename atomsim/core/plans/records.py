@@ -166,6 +166,8 @@ class Forces(NamedTuple):
         about_stop: one past the end of each run.
         rest_squared: r² per atom acted on, for tethers [length²].
         first_rest: where in it each run begins.
+        held_start: runs of the slots that are held after all forces.
+        held_stop: one past the end of each run.
     """
 
     kind: Indices
@@ -178,6 +180,8 @@ class Forces(NamedTuple):
     about_stop: Indices
     rest_squared: Floats
     first_rest: Indices
+    held_start: Indices
+    held_stop: Indices
 
 
 class Watch(NamedTuple):

@@ -1,0 +1,36 @@
+"""A scene as a simulation that can be stepped, on the backend that `run` would choose."""
+
+from __future__ import annotations
+
+import os
+
+from atomsim.compiler import compile_scene
+from atomsim.core.backend import choose
+from atomsim.core.simulation import Simulation
+from atomsim.scene import LoadedScene, load
+
+
+class SceneSimulation(Simulation):
+    """A scene that is run by hand: stepped by as many rounds as one likes, measured, pushed.
+
+    Args:
+        scene: as `load` returns it, or its file.
+        backend: `auto`, `numpy` or `numba`; whichever it is, the states have the same bits.
+        threads: how many threads to use; by default as many as are worth it.
+
+    Raises:
+        SceneError: the scene has mistakes.
+        InputError: an unknown backend, or an impossible number of threads.
+
+    Attributes:
+        scene: the scene and where it came from.
+        backend: what computes it, and why that.
+    """
+
+    def __init__(
+        self, scene: LoadedScene | str | os.PathLike[str], *, backend: str = "auto", threads: int | None = None
+    ) -> None:
+        self.scene = scene if isinstance(scene, LoadedScene) else load(scene)
+        model, state = compile_scene(self.scene.scene, self.scene.source)
+        self.backend = choose(backend, threads, model, self.scene.scene.rounds)
+        super().__init__(model, state, self.backend.make_stepper)
