@@ -15,7 +15,7 @@ from atomsim.compiler.selections import SelectionError
 from atomsim.core.gauges.block import Block
 from atomsim.core.gauges.meter import Meter
 from atomsim.core.observables import Observer
-from atomsim.core.simulate import frame_of
+from atomsim.core.simulation import frame_of
 from atomsim.scene.language.measures import QUANTITIES, QuantityName, parse_measure
 
 SCENE = scene_of(
@@ -39,7 +39,7 @@ def value(text: str) -> list[float]:
     measure = parse_measure(text)
     gauge = gauge_of(measure, SUBJECT)
     assert gauge.n_columns == len(measure.columns)
-    block = Block.of_frames([frame_of(MODEL, STATE, Observer(MODEL))])
+    block = Block.of_frames([frame_of(MODEL, STATE, Observer(MODEL).observe(STATE))])
     return Meter([gauge]).take(block)[0].tolist()
 
 
