@@ -74,8 +74,9 @@ With Numba, which is an extra, long runs are faster, to the same bits: `pip inst
 that is printed says which.
 
 `--resume` needs no scene, because the trajectory holds its own. With a SCENE as well, `atomsim run --resume OUT SCENE`
-first makes sure that the two are the same: they may differ in `title`, `description`, `rounds` and `render`; if
-anything else differs, nothing is run. It is the scene inside that goes on; `--rounds` says up to which round.
+first makes sure that the two are the same: they may differ in `title`, `description`, `rounds`, `render` and
+`silence`; if anything else differs, nothing is run. It is the scene inside that goes on; `--rounds` says up to which
+round.
 """,
     "atomsim check": """\
 The word after a number of bonds says how they are computed. All three ways give the same bits; they differ in speed.
@@ -87,6 +88,11 @@ The word after a number of bonds says how they are computed. All three ways give
 | `general` | any | pair by pair, looking up both atoms |
 
 `held, not computed`: both ends of all these bonds are held, so nothing can come of them.
+
+What is found is one line, `file:line: warning: message [code]` or `file:line: note: message [code]`, and a remedy,
+YAML to lay over the scene. [Findings](findings.md) explains every code. With `--json`, each is an object with `code`,
+`level` (`warning` or `note`), `when` (`before` a run), `names` (paths such as `groups.cloth`), `file`, `line`,
+`rounds`, `message` and `remedy`.
 """,
 }
 
@@ -146,6 +152,8 @@ def _scene_reference() -> Iterator[str]:
     yield from _section("## Pictures: `render`", ["Render"], docs)
     yield from _section("### Camera", ["Camera"], docs)
     yield _examples("render")
+    yield from _section("## Findings that are meant: `silence`", ["Silence"], docs)
+    yield _examples("silence")
 
 
 def _section(heading: str, names: Iterable[str], docs: dict[str, dict[str, FieldDoc]]) -> Iterator[str]:

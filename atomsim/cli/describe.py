@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from atomsim.cli.remedies import with_remedies
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR
-from atomsim.core.diagnosis.forecast import forecast
 from atomsim.core.diagnosis.stiffness import largest_time_step
 from atomsim.core.forces import held_atoms
 from atomsim.core.free_memory import readable_bytes
@@ -19,6 +18,7 @@ from atomsim.scene.mistakes.wording import printable
 from atomsim.trajectory import count_frames, trajectory_bytes
 
 if TYPE_CHECKING:
+    from atomsim.findings.before.diagnose import Examination
     from atomsim.trajectory import Trajectory
 
 BYTES_OF_PROGRAM = 60_000_000
@@ -49,8 +49,18 @@ def describe_model(model: Model, state: State, rounds: int, record_every: int) -
         _line("run", f"{rounds:,} rounds of τ = {model.time_step:g}", stable),
         _line("record", f"{n_frames:,} frames, {readable_bytes(size)}", ()),
         _line("memory", f"about {readable_bytes(_memory(model))}", ()),
-        *(f"  warning: {warning}" for warning in forecast(model, state)),
     ]
+
+
+def describe_findings(examination: Examination) -> Iterator[str]:
+    """Yield what was found in a scene, each with the YAML that takes it away, and what was not looked for."""
+    for found in examination.findings:
+        yield printable(str(found))
+        if found.remedy:
+            yield "  remedy:"
+            yield from (f"    {line}" for line in found.remedy.splitlines())
+    if examination.skipped:
+        yield f"  skipped    for so many atoms: {', '.join(examination.skipped)}"
 
 
 def describe_trajectory(trajectory: Trajectory) -> list[str]:

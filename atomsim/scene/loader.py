@@ -13,7 +13,7 @@ from atomsim.errors import Problem, SceneError
 from atomsim.scene.files import read_scene_file, read_scene_text
 from atomsim.scene.language import Scene
 from atomsim.scene.mistakes.blanks import check_blanks
-from atomsim.scene.mistakes.references import check_deletions, check_references
+from atomsim.scene.mistakes.references import check_deletions, check_references, check_silences
 from atomsim.scene.mistakes.wording import printable
 from atomsim.scene.overrides import override
 from atomsim.scene.source import Source
@@ -73,7 +73,8 @@ def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
     data = root.plain()
     source = Source(name=name, overrides=overrides, marks=Places(root))
     present = without_nulls(data)
-    problems = [*check_blanks(root, data), *check_deletions(root), *check_references(present, source)]
+    problems = [*check_blanks(root, data), *check_deletions(root)]
+    problems += [*check_references(present, source), *check_silences(present, source)]
     scene = _validated(data, source, problems)
     if problems or scene is None:
         raise SceneError(_in_order(problems, source))

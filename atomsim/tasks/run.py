@@ -11,12 +11,12 @@ from typing import TypeAlias
 
 from atomsim.compiler import compile_scene
 from atomsim.core.backend import Backend, choose
-from atomsim.core.diagnosis.forecast import forecast
 from atomsim.core.diagnosis.tunnelling import SpeedWatch
 from atomsim.core.free_memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
 from atomsim.errors import BlowUpError, InputError, Remedy, RunError
+from atomsim.findings.before.diagnose import examine
 from atomsim.scene import LoadedScene
 from atomsim.scene.difference import differences
 from atomsim.tasks.recompute import compile_inside
@@ -93,8 +93,9 @@ def run(
         raise InputError(f"the number of rounds must be 1 or more (got {rounds})")
     model, state = compile_scene(scene.scene, scene.source)
     if warn is not None:
-        for warning in forecast(model, state):
-            warn(warning)
+        for found in examine(scene, model, state).findings:
+            if found.level == "warning":
+                warn(str(found))
     header = Header.of(
         model,
         scene_text=scene.source.text,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -99,8 +100,9 @@ def test_a_blow_up_is_explained_and_keeps_the_frames_before(cli):
     assert result.code == 3
     assert result.out == ""
     assert result.err == (
-        "warning: time_step 0.1 is at or above 0.0286, the largest that the stiffness of this scene allows; "
-        "expect it to blow up; try time_step 0.01\n"
+        "--set time_step=0.1: warning: time_step 0.1 is at or above 0.0286, the largest that the stiffness of this "
+        "scene allows; expect it to blow up; what makes it stiff: bonds.left, bonds.right; try time_step 0.01 "
+        "[over-stiff]\n"
         "the simulation blew up in round 15: left[69] (atom 69) is the fastest, and the energy is 1.61e+05, "
         "where the scene accounts for 70.1\n"
         "  pushed hardest by bonds.left (scenes/rods.yaml:23), against left[2] (atom 2), "
@@ -250,10 +252,30 @@ def test_check_describes_every_scene_and_reports_every_mistake(cli):
     assert result.out.startswith("scenes/ring.yaml: ")
 
 
-def test_check_warns_of_rounds_to_show_that_are_never_run(cli):
+def test_check_says_what_is_found_with_its_remedy(cli):
     result = cli("check", "scenes/rods.yaml", "--set", "rounds=250")
     assert result.code == 0
-    assert result.out.endswith("  warning: render.rounds: there is no round 300; the run ends at 250\n")
+    assert result.out.endswith(
+        "  memory     about 60.6 MB\n"
+        "scenes/rods.yaml:29: note: there is no round 300 to show; the run ends at 250 [no-such-round]\n"
+        "  remedy:\n"
+        "    render:\n"
+        "      rounds: [0, 200]\n"
+    )
+
+
+def test_check_gives_findings_as_data_whatever_else_is_wrong(cli):
+    Path("broken.yaml").write_text("atomsim: 1\n")
+    result = cli("check", "--json", "scenes/ring.yaml", "broken.yaml", "scenes/rods.yaml", "--set", "rounds=250")
+    assert result.code == 2
+    assert result.err.startswith("broken.yaml:1:1: ")
+    found = json.loads(result.out)
+    assert [(each["code"], each["file"], each["line"], each["rounds"]) for each in found] == [
+        ("no-such-round", "scenes/ring.yaml", 24, [2000, 3000, 3400, 4000]),
+        ("no-such-round", "scenes/rods.yaml", 29, [300, 400, 600, 900, 1300, 2000]),
+    ]
+    assert list(found[0]) == ["code", "level", "when", "names", "file", "line", "rounds", "message", "remedy"]
+    assert json.loads(cli("check", "--json", "broken.yaml").out) == []
 
 
 def test_version(cli):

@@ -50,7 +50,7 @@ def test_quiet_leaves_out_warnings_before_and_after(cli):
     assert cli("run", "fast.yaml", "-o", "loud.h5").err.startswith("warning: ")
     assert cli("run", "fast.yaml", "-q").err == ""
     blow_up = ("run", "scenes/rods.yaml", "--rounds", "400", "--set", "time_step=0.1", "--force")
-    assert cli(*blow_up).err.startswith("warning: time_step 0.1 ")
+    assert cli(*blow_up).err.startswith("--set time_step=0.1: warning: time_step 0.1 ")
     assert cli(*blow_up, "-q").err.startswith("the simulation blew up in round 15: ")
 
 

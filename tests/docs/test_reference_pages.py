@@ -32,6 +32,7 @@ EXTRA_EXAMPLES = {
     "render",
     "selections",
     "extends",
+    "silence",
 }
 
 

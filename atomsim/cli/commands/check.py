@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+
+if TYPE_CHECKING:
+    from atomsim.findings.finding import Finding
 
 
 def check(
@@ -17,22 +21,28 @@ def check(
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scenes; may be repeated."),
     ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print what was found as a list in JSON, and nothing else.")
+    ] = False,
 ) -> None:
-    """Find the mistakes of scenes, or describe what they would run.
+    """Find the mistakes of scenes, or describe what they would run and say what they are probably missing.
 
-    Every mistake is one line `file:line:column: path: message`; exit code 2 if there is any.
+    Every mistake is one line `file:line:column: path: message`; exit code 2 if there is any. What is found in a scene
+    without mistakes is a warning, nearly always a fault, or a note, which may be meant; docs/findings.md explains each.
 
     Example:
 
     atomsim check scenes/*.yaml
     """
 
-    from atomsim.cli.describe import describe_model
+    from atomsim.cli.describe import describe_findings, describe_model
     from atomsim.compiler import compile_scene
     from atomsim.errors import SceneError
+    from atomsim.findings.before.diagnose import examine
     from atomsim.scene import load
 
     n_wrong = 0
+    found: list[Finding] = []
     for path in scenes:
         try:
             loaded = load(path, settings or ())
@@ -40,12 +50,16 @@ def check(
         except SceneError as error:
             n_wrong += 1
             tell(with_remedies(error))
-        else:
-            scene = loaded.scene
-            say(f"{path}: {scene.title}" if scene.title else str(path))
-            say("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
-            beyond = [shown for shown in scene.render.rounds or () if shown > scene.rounds]
-            if beyond:
-                say(f"  warning: render.rounds: there is no round {beyond[0]}; the run ends at {scene.rounds}")
+            continue
+        scene, examination = loaded.scene, examine(loaded, model, state)
+        if as_json:
+            found += examination.findings
+            continue
+        say(f"{path}: {scene.title}" if scene.title else str(path))
+        say("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
+        for line in describe_findings(examination):
+            say(line)
+    if as_json:
+        say(json.dumps([each.as_data() for each in found], ensure_ascii=False, indent=1))
     if n_wrong:
         raise typer.Exit(2)

@@ -85,7 +85,7 @@ def run(
                 backend=backend,
                 threads=threads,
                 report=report,
-                warn=None if quiet else _warn,
+                warn=None if quiet else tell,
             )
     if outcome.warning is not None and not quiet:
         _warn(outcome.warning)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,31 +39,44 @@ def _both(one: str, other: str) -> str:
     return f"inside {one}" if one == other else f"of {one} and {other}"
 
 
-def without_overlaps(model: Model, table: CollisionTable, first: Indices, second: Indices) -> str:
-    """Say which key of a collision leaves its overlapping pairs out, as the end of a sentence; empty if none does.
+@dataclass(frozen=True, slots=True)
+class Sparing:
+    """What leaves overlapping pairs out of a collision.
+
+    Attributes:
+        keys: what to write into the collision; nothing where no key helps.
+        n_left: how many pairs it would not leave out.
+    """
+
+    keys: dict[str, bool | int]
+    n_left: int
+
+
+def sparing(model: Model, table: CollisionTable, first: Indices, second: Indices) -> Sparing:
+    """Return the key of a collision that leaves its overlapping pairs out.
 
     Bonds are the reason why most atoms overlap, so they come first: `except_bound` with the smallest number of bonds
     that leaves all these pairs out, else `min_gap`, else `except_bound` for some of the pairs.
     """
     apart = bonds_apart(model.bonds, model.n_atoms, first, second)
-    n_left, key = int((apart == 0).sum()), _except_bound(model, table, int(apart.max()))
-    if key and not n_left:
-        return f", or write `{key}`"
+    n_left, keys = int((apart == 0).sum()), _except_bound(model, table, int(apart.max()))
     gap = _min_gap(table, first, second)
-    if gap:
-        return f", or write `min_gap: {gap}`"
-    return f"; `{key}` would leave out all but {n_left}" if key else ""
+    if gap and (n_left or not keys):
+        return Sparing({"min_gap": gap}, 0)
+    return Sparing(keys, n_left if keys else first.size)
 
 
-def _except_bound(model: Model, table: CollisionTable, n_bonds: int) -> str:
-    """Return the key that leaves out pairs up to so many bonds apart; empty if it would leave nothing to collide."""
+def _except_bound(model: Model, table: CollisionTable, n_bonds: int) -> dict[str, bool | int]:
+    """Return the key that leaves out pairs up to so many bonds apart; nothing if it leaves nothing to collide."""
     if not n_bonds:
-        return ""
+        return {}
     try:
         bound = bound_pairs(model.bonds, model.n_atoms, n_bonds)
     except MemoryError:
-        return ""
-    return f"except_bound: {'true' if n_bonds == 1 else n_bonds}" * bool(n_collision_pairs(replace(table, bound=bound)))
+        return {}
+    if not n_collision_pairs(replace(table, bound=bound)):
+        return {}
+    return {"except_bound": True if n_bonds == 1 else n_bonds}
 
 
 def _min_gap(table: CollisionTable, first: Indices, second: Indices) -> int:

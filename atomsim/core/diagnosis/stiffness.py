@@ -36,10 +36,16 @@ def largest_time_step(model: Model, state: State) -> float:
     return 4.0 / stiffness if stiffness > 0.0 else np.inf
 
 
-def is_surely_stable(model: Model, state: State) -> bool:
-    """Return whether a bound that is cheaper than λmax, the largest sum of a row (Gershgorin), allows the time step."""
+def is_surely_stable(model: Model, state: State, more: float = 0.0) -> bool:
+    """Return whether a bound that is cheaper than λmax, the largest sum of a row (Gershgorin), allows the time step.
+
+    Args:
+        model: the compiled scene.
+        state: the shape it has.
+        more: stiffness to come on top of λmax.
+    """
     with np.errstate(all="ignore"):
-        return model.time_step * _Springs(model, state).bound() < 4.0
+        return model.time_step * (_Springs(model, state).bound() + more) < 4.0
 
 
 def largest_stiffness(model: Model, state: State) -> float:

@@ -22,6 +22,7 @@ from atomsim.scene.language.rules import (
     NeighbourBonds,
 )
 from atomsim.scene.language.scene import Camera, Jitter, Render, Scene
+from atomsim.scene.language.silence import Silence
 
 __all__ = [
     "AllPairsBonds",
@@ -49,6 +50,7 @@ __all__ = [
     "RingGroup",
     "Rotation",
     "Scene",
+    "Silence",
     "Spin",
     "StringGroup",
     "Tether",

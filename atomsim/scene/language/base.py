@@ -5,7 +5,15 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.css_colors import CSS_COLORS
@@ -97,8 +105,14 @@ Name = Annotated[str, AfterValidator(_check_name), WithJsonSchema({"type": "stri
 """A name that a person gives: letters, digits, `_` and `-`."""
 
 
-def _drop_nulls(value: Any) -> Any:
+def drop_nulls(value: Any) -> Any:
+    """Leave out what is null: it counts as not declared."""
     return {key: inner for key, inner in value.items() if inner is not None} if isinstance(value, dict) else value
+
+
+def as_tuple(value: object) -> object:
+    """Let one item stand for a list of it."""
+    return tuple(value) if isinstance(value, (list, tuple)) else (value,)
 
 
 class OneOrList:
@@ -107,7 +121,7 @@ class OneOrList:
 
 Declared = TypeVar("Declared")
 
-Named = Annotated[dict[Name, Declared], BeforeValidator(_drop_nulls)]
+Named = Annotated[dict[Name, Declared], BeforeValidator(drop_nulls)]
 """Declarations by name, in order; null counts as not declared."""
 
 
@@ -145,7 +159,7 @@ _SELECTION_SCHEMA = {
 SelectionText = Annotated[str, AfterValidator(_check_selection)]
 """One selection expression: `ring`, `ring[0:10]`, `floor[0, :]` or `all`."""
 
-Colors = Annotated[dict[SelectionText, Color], BeforeValidator(_drop_nulls)]
+Colors = Annotated[dict[SelectionText, Color], BeforeValidator(drop_nulls)]
 """Colours by selection."""
 
 Selection = Annotated[

@@ -16,6 +16,7 @@ from atomsim.scene.language.base import (
     OneOrList,
     Positive,
     Vector,
+    as_tuple,
 )
 
 
@@ -37,11 +38,7 @@ class Spin(Declaration):
     """Angular velocity [radians per unit of time]: each atom starts with rate · axis × (its offset) plus `velocity`."""
 
 
-def _as_tuple(value: object) -> object:
-    return tuple(value) if isinstance(value, (list, tuple)) else (value,)
-
-
-Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(_as_tuple), OneOrList()]
+Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(as_tuple), OneOrList()]
 """A turn, or a list of turns."""
 
 

@@ -23,6 +23,7 @@ from atomsim.scene.language.base import (
 from atomsim.scene.language.forces import Force
 from atomsim.scene.language.groups import Group
 from atomsim.scene.language.rules import Bonds, Collisions
+from atomsim.scene.language.silence import Silences
 
 
 class Jitter(Declaration):
@@ -104,3 +105,5 @@ class Scene(Declaration):
     """What acts from outside, by name, applied in order of declaration."""
     render: Render = Field(default_factory=Render)
     """How `atomsim render` shows the trajectory."""
+    silence: Silences = Field(default_factory=dict)
+    """Findings that are meant, by code: {because, names} or a list of these."""

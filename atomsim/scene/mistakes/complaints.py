@@ -74,7 +74,7 @@ def _context(found: ErrorDetails) -> dict[str, Any]:
     return context
 
 
-_SAYS_ALL = ("min_gap", "push_rounds", "zero_axis", "selection_syntax")
+_SAYS_ALL = ("code", "min_gap", "push_rounds", "zero_axis", "selection_syntax")
 """Findings of the language itself that say in their own words what they got."""
 
 _NEEDS = {
@@ -97,7 +97,7 @@ def _path(found: ErrorDetails, data: Any) -> KeyPath:
 
     The word that chooses a declaration is put into the path of whatever is inside: (groups, hoop, *ring*, count).
     """
-    loc = found["loc"][:-1] if found["type"] == "name" else found["loc"]
+    loc = found["loc"][:-1] if found["type"] in ("name", "code") else found["loc"]
     if len(loc) > 2 and _chosen_by(loc) is not None:
         loc = (*loc[:2], *loc[3:])
     path: list[str | int] = []

@@ -8,6 +8,7 @@ from typing import Any
 
 from atomsim.errors import Problem
 from atomsim.scene.declarations import sections, selecting_keys
+from atomsim.scene.language import Scene
 from atomsim.scene.language.selection import SelectionSyntaxError, parse_selection
 from atomsim.scene.mistakes.wording import meant, readable
 from atomsim.scene.source import KeyPath, Source, dotted
@@ -29,6 +30,25 @@ def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
         for path, name in [*_selected(data), *_colored(data)]
         if name not in groups and name != "all"
     ]
+
+
+def check_silences(data: dict[str, Any], source: Source) -> list[Problem]:
+    """Find names of silences that lead to nothing in the scene.
+
+    Args:
+        data: the plain data of a scene without nulls; what is malformed is left to validation.
+        source: the places of the values.
+    """
+    problems = []
+    for path, text in _silenced(data):
+        section, _, name = text.partition(".")
+        if section not in Scene.model_fields:
+            remedy = meant(section, Scene.model_fields, "paths begin with")
+            problems.append(source.problem(path, f"there is no `{readable(section)}` in a scene; {remedy}"))
+        elif section in sections() and name and name not in (there := _mapping(data.get(section))):
+            remedy = meant(name, there, f"the {section} are") if there else f"there are no {section}"
+            problems.append(source.problem(path, f"there is no `{readable(text)}`; {remedy}"))
+    return problems
 
 
 def check_deletions(root: Node) -> list[Problem]:
@@ -65,6 +85,15 @@ def _colored(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     for text in _mapping(_mapping(data.get("render")).get("colors")):
         with suppress(SelectionSyntaxError):
             yield ("render", "colors", text), parse_selection(text).group
+
+
+def _silenced(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+    """Every path that a silence names."""
+    for code, silences in _mapping(data.get("silence")).items():
+        listed = silences if isinstance(silences, list) else [silences]
+        for index, silence in enumerate(listed):
+            place: KeyPath = ("silence", code, index) if silences is listed else ("silence", code)
+            yield from _texts(_mapping(silence).get("names"), (*place, "names"))
 
 
 def _texts(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:

@@ -28,3 +28,15 @@ def to_yaml(data: Any) -> str:
     """
     text: str = yaml.dump(data, Dumper=_Writer, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None)
     return text
+
+
+def to_line(data: Any) -> str:
+    """Write plain data as YAML on one line, as the inside of a scene usually is.
+
+    >>> to_line({"between": ["post", "cloth"]}), to_line(1e-9), to_line(None)
+    ('{between: [post, cloth]}', '1.0e-09', 'null')
+    """
+    text: str = yaml.dump(
+        data, Dumper=_Writer, sort_keys=False, allow_unicode=True, width=1 << 30, default_flow_style=True
+    )
+    return text.removesuffix("...\n").rstrip("\n")

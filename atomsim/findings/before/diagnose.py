@@ -1,0 +1,89 @@
+"""The table of the diagnoses before a run, and what becomes of what they see."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from atomsim.core.model import Model, State
+from atomsim.findings.before.declared_twice import declared_twice
+from atomsim.findings.before.force_never_acts import force_never_acts
+from atomsim.findings.before.held import collision_of_held, force_on_held
+from atomsim.findings.before.idle import idle
+from atomsim.findings.before.in_pieces import in_pieces
+from atomsim.findings.before.no_such_round import no_such_round
+from atomsim.findings.before.over_stiff import over_stiff
+from atomsim.findings.before.overlap_at_start import overlap_at_start
+from atomsim.findings.before.prestressed import prestressed
+from atomsim.findings.before.rule_misses_group import rule_misses_group
+from atomsim.findings.before.tunnelling import tunnelling
+from atomsim.findings.before.weld import weld
+from atomsim.findings.finding import Finding, Symptom, finding, without_consequences
+from atomsim.findings.silence import needless_silences, without_silenced
+from atomsim.findings.subject import Subject
+from atomsim.scene.loader import LoadedScene
+
+Diagnosis: TypeAlias = Callable[[Subject], Iterator[Symptom]]
+
+ANY = 1 << 62
+"""As many atoms as there are."""
+
+DIAGNOSES: dict[str, tuple[Diagnosis, int]] = {
+    "tunnelling": (tunnelling, ANY),
+    "in-pieces": (in_pieces, ANY),
+    "rule-misses-group": (rule_misses_group, ANY),
+    "over-stiff": (over_stiff, ANY),
+    "weld": (weld, ANY),
+    "declared-twice": (declared_twice, ANY),
+    "idle": (idle, ANY),
+    "force-on-held": (force_on_held, ANY),
+    "force-never-acts": (force_never_acts, ANY),
+    "collision-of-held": (collision_of_held, ANY),
+    "overlap-at-start": (overlap_at_start, ANY),
+    "prestressed": (prestressed, ANY),
+    "no-such-round": (no_such_round, ANY),
+}
+"""What looks for each kind of finding, and for how many atoms at most it is worth its time."""
+
+ONLY_BEFORE = DIAGNOSES.keys() - {"tunnelling"}
+"""Of these a run tells nothing new."""
+
+
+@dataclass(frozen=True, slots=True)
+class Examination:
+    """What was found before a run.
+
+    Attributes:
+        findings: in the order of the file.
+        skipped: the kinds that were not looked for, because the scene has too many atoms.
+    """
+
+    findings: tuple[Finding, ...]
+    skipped: tuple[str, ...]
+
+
+def examine(loaded: LoadedScene, model: Model, state: State) -> Examination:
+    """Look for everything that can be found in a scene without running it.
+
+    Args:
+        loaded: the scene and where it was written.
+        model: what it compiles to.
+        state: where its run begins.
+    """
+    scene, source = loaded.scene, loaded.source
+    subject = Subject(scene, source, model, state)
+    found: list[Finding] = []
+    skipped = []
+    with np.errstate(all="ignore"):  # infinite is a fair answer to absurd numbers
+        for code, (diagnosis, most_atoms) in DIAGNOSES.items():
+            if model.n_atoms > most_atoms:
+                skipped.append(code)
+            else:
+                found += (finding(code, "before", symptom, source) for symptom in diagnosis(subject))
+    codes = ONLY_BEFORE - set(skipped)
+    kept = without_consequences(without_silenced(found, scene))
+    kept += needless_silences(found, scene, source, "before", codes)
+    return Examination(tuple(sorted(kept, key=lambda each: (each.file, each.line))), tuple(skipped))

@@ -1,0 +1,44 @@
+"""Words of findings: numbers and names as sentences have them."""
+
+from __future__ import annotations
+
+import math
+
+
+def counted(number: int, noun: str) -> str:
+    """Write how many there are of something.
+
+    >>> counted(1, "pair"), counted(1200, "pair")
+    ('1 pair', '1,200 pairs')
+    """
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
+def listed(names: list[str]) -> str:
+    """Write names as a sentence does.
+
+    >>> listed(["left"]), listed(["left", "right", "palm"])
+    ('left', 'left, right and palm')
+    """
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+def round_down(number: float) -> float:
+    """Return the number of one digit that is not above a positive number: what a person would try.
+
+    >>> round_down(0.0286), round_down(35.0)
+    (0.02, 30.0)
+    """
+    power = 10.0 ** math.floor(math.log10(number))
+    return float(f"{math.floor(number / power) * power:g}")
+
+
+def round_up(number: float) -> float:
+    """Return the number of two digits that is above a positive number.
+
+    >>> round_up(1.6), round_up(2.83), round_up(10.0)
+    (1.7, 2.9, 11.0)
+    """
+    power = 10.0 ** (math.floor(math.log10(number)) - 1)
+    return float(f"{(math.floor(number / power * (1 + 1e-9)) + 1) * power:g}")
