@@ -81,7 +81,7 @@ def compile(loaded: LoadedScene) -> tuple[Model, State]:
     """Compile a loaded scene to flat force tables and its first state; see `atomsim.compiler.compile_scene`."""
     from atomsim.compiler import compile_scene
 
-    return compile_scene(loaded.scene, loaded.source)
+    return compile_scene(loaded)
 
 
 def __getattr__(name: str) -> Any:

@@ -68,7 +68,7 @@ def _break_even(times: Results) -> Results:
     per_round = {name: (whole[name] - start[name]) / (ROUNDS - 1) for name in start}
     gain = per_round["numpy"] - per_round["numba"]
     loaded = load(RODS)
-    model, _ = compile_scene(loaded.scene, loaded.source)
+    model, _ = compile_scene(loaded)
     return {
         "measured": (start["numba"] - start["numpy"]) / gain if gain > 0.0 else None,
         "auto": _auto_switches_at(model),

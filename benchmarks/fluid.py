@@ -9,6 +9,7 @@ import numpy as np
 
 from atomsim.compiler import compile_scene
 from atomsim.core.model import Model, State
+from atomsim.scene import LoadedScene
 from atomsim.scene.language import Scene
 
 SPACING = 2.1
@@ -34,7 +35,7 @@ def fluid_scene(n_atoms: int) -> dict[str, Any]:
 
 def free_fluid(n_atoms: int, seed: int = 1) -> tuple[Model, State]:
     """Compile the scene and set its atoms in random motion, which the scene language has no word for."""
-    model, state = compile_scene(Scene.model_validate(fluid_scene(n_atoms)))
+    model, state = compile_scene(LoadedScene(Scene.model_validate(fluid_scene(n_atoms))))
     normal = random.Random(seed).gauss
     velocity = np.array([normal(0.0, SPEED) for _ in range(3 * n_atoms)]).reshape(n_atoms, 3)
     return model, State(0, state.position, velocity)

@@ -13,6 +13,7 @@ from atomsim.core.backend import Stepper
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
 from atomsim.core.simulation import frame_of
+from atomsim.scene import LoadedScene
 from atomsim.scene.language import Scene
 from benchmarks.tables import Answer, Table, below, significant
 from benchmarks.timing import Results
@@ -37,7 +38,7 @@ def measure(quick: bool) -> Results:
         }
     )
     memory = _Memory()
-    model, state = memory.of("compiling the scene", lambda: compile_scene(scene))
+    model, state = memory.of("compiling the scene", lambda: compile_scene(LoadedScene(scene)))
     memory.of("measuring a frame", lambda: frame_of(model, state, Observer(model).observe(state)))
     memory.of("NumPy: one round", lambda: _one_round(NumpyStepper(model, state)))
     if find_spec("numba"):

@@ -44,11 +44,11 @@ def _actions(backend: str, path: Path) -> dict[str, Callable[[], object]]:
     rounds, record_every = loaded.scene.rounds, loaded.scene.record_every
 
     def alone() -> None:
-        model, state = compile_scene(loaded.scene, loaded.source)
+        model, state = compile_scene(loaded)
         choose(backend, 1, model, rounds).make_stepper(model, state).advance(rounds)
 
     def measured() -> None:
-        model, state = compile_scene(loaded.scene, loaded.source)
+        model, state = compile_scene(loaded)
         make = choose(backend, 1, model, rounds).make_stepper
         deque(simulate(model, state, rounds, record_every, make), maxlen=0)
 

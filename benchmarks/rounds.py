@@ -49,7 +49,7 @@ def measure(scene: str, quick: bool, engines: Sequence[Engine] = ENGINES) -> Res
         engines: who takes part; NumPy has to.
     """
     loaded = load(SCENES / f"{scene}.yaml")
-    model, state = compile_scene(loaded.scene, loaded.source)
+    model, state = compile_scene(loaded)
     start = _after(NumpyStepper, model, state, START).state()
     makers = {engine.name: make for engine in engines if (make := engine.load())}
     steppers = {name: _after(make, model, start, COMPARED) for name, make in makers.items()}

@@ -39,6 +39,7 @@ from atomsim.core.model import (
 from atomsim.core.pairs.bonded import bound_pairs
 from atomsim.core.pairs.near import pair_squares, squared_distance
 from atomsim.errors import Problem, SceneError
+from atomsim.scene import LoadedScene
 from atomsim.scene.language import (
     Bonds,
     Collisions,
@@ -60,12 +61,11 @@ Array = TypeVar("Array", Floats, Indices)
 Entry = TypeVar("Entry")
 
 
-def compile_scene(scene: Scene, source: Source | None = None) -> tuple[Model, State]:
+def compile_scene(loaded: LoadedScene) -> tuple[Model, State]:
     """Compile a scene to flat force tables and its first state.
 
     Args:
-        scene: what a person wrote.
-        source: where it was written, for messages and for the origin of every table.
+        loaded: what a person wrote, and where, for messages and for the origin of every table.
 
     Returns:
         The model, constant in a run, and the state at round 0; their arrays are read-only.
@@ -74,7 +74,7 @@ def compile_scene(scene: Scene, source: Source | None = None) -> tuple[Model, St
         SceneError: selections that name no atoms, tables without pairs, coincident atoms that are bound or collide,
             or more atoms or pairs than fit into memory; all mistakes at once.
     """
-    return _Compiler(scene, source or Source()).compile()
+    return _Compiler(loaded.scene, loaded.source).compile()
 
 
 class _Compiler:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import ValidationError
@@ -29,7 +29,7 @@ class LoadedScene:
     """A valid scene and where it came from."""
 
     scene: Scene
-    source: Source
+    source: Source = field(default_factory=Source)
 
 
 def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> LoadedScene:

@@ -48,7 +48,7 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
     if n_atoms != header.n_atoms:  # asked before any are made: a liar may ask for as many as memory holds
         raise _misleading(path, "atoms")
     try:
-        model, state = compile_scene(loaded.scene, loaded.source)
+        model, state = compile_scene(loaded)
     except SceneError as error:
         raise _broken(path, error) from None
     recompiled = Header.of(

@@ -91,7 +91,7 @@ def run(
         rounds = scene.scene.rounds
     if rounds < 1:
         raise InputError(f"the number of rounds must be 1 or more (got {rounds})")
-    model, state = compile_scene(scene.scene, scene.source)
+    model, state = compile_scene(scene)
     if warn is not None:
         for found in examine(scene, model, state).findings:
             if found.level == "warning":

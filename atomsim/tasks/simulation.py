@@ -31,6 +31,6 @@ class SceneSimulation(Simulation):
         self, scene: LoadedScene | str | os.PathLike[str], *, backend: str = "auto", threads: int | None = None
     ) -> None:
         self.scene = scene if isinstance(scene, LoadedScene) else load(scene)
-        model, state = compile_scene(self.scene.scene, self.scene.source)
+        model, state = compile_scene(self.scene)
         self.backend = choose(backend, threads, model, self.scene.scene.rounds)
         super().__init__(model, state, self.backend.make_stepper)

@@ -49,7 +49,7 @@ COMMANDS = {
 def record(path: Path, scene: str = SCENE, *, finish: bool = True, **changes: Any) -> Path:
     """Record a run of a scene, with other things in the header than the truth."""
     loaded = loads(SCENE)
-    model, state = compile_scene(loaded.scene, loaded.source)
+    model, state = compile_scene(loaded)
     header = Header.of(model, scene_text=scene, scene_name="s.yaml", rounds=30, record_every=10)
     with Recorder(path, replace(header, **changes)) as recorder:
         for frame in simulate(model, state, 30, 10):
@@ -213,7 +213,7 @@ def test_a_frame_with_a_forged_digest_is_found_by_computing_it_again(cli):
 )
 def test_frames_left_out_or_put_in_are_found(cli, rounds, first):
     loaded = loads(SCENE)
-    model, state = compile_scene(loaded.scene, loaded.source)
+    model, state = compile_scene(loaded)
     header = Header.of(model, scene_text=SCENE, scene_name="s.yaml", rounds=30, record_every=10)
     with Recorder("out.h5", header) as recorder:
         for frame in simulate(model, state, 30, 5):

@@ -149,7 +149,7 @@ def test_a_terminal_that_lacks_our_letters_gets_escapes(folder):
 def test_titles_do_not_command_the_terminal(cli):
     """A scene file cannot hold such characters, but a trajectory made to do damage can."""
     inside = load("scenes/rods.yaml")
-    model, state = compile_scene(inside.scene, inside.source)
+    model, state = compile_scene(inside)
     model = replace(model, title="\x1b[31mred\x07 alert")
     header = Header.of(model, scene_text=inside.source.text, scene_name="\x9b2Jrods", rounds=10, record_every=10)
     with Recorder("out.h5", header) as recorder:

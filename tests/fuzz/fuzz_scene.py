@@ -97,7 +97,7 @@ def ends_well(data: bytes) -> None:
     """Load, compile and describe a text; any exception but a list of one-line mistakes is a finding."""
     try:
         loaded = loads(data.decode(errors="replace"), "fuzz.yaml")
-        model, state = compile_scene(loaded.scene, loaded.source)
+        model, state = compile_scene(loaded)
     except SceneError as error:
         if not error.problems or not all(str(problem).isprintable() for problem in error.problems):
             raise AssertionError(f"not one printable line per mistake: {error}") from error

@@ -19,6 +19,7 @@ from atomsim.core.model import Floats, Indices, Model, State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
 from atomsim.core.pairs.collisions import table_pairs_near
+from atomsim.scene import LoadedScene
 
 ROUNDS = 400
 
@@ -93,7 +94,7 @@ def n_additions(model: Model) -> int:
 
 @pytest.mark.parametrize("name", ["rods", "rod-thread", "threads"])
 def test_paper_strings_conserve_both_momenta(name: str) -> None:
-    lost, turned, bound = drift(*compile_scene(paper_scene(name)))
+    lost, turned, bound = drift(*compile_scene(LoadedScene(paper_scene(name))))
     assert bound < 1e-7
     assert lost < 1
     assert turned < 1

@@ -12,6 +12,7 @@ from atomsim.compiler import compile_scene
 from atomsim.core.digest import state_digest
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.observables import Observer
+from atomsim.scene import LoadedScene
 
 MIRRORS = [(-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0), (-1.0, -1.0, -1.0)]
 
@@ -24,7 +25,7 @@ def mirrored(state: State, mirror: tuple[float, float, float]) -> State:
 @pytest.mark.parametrize("name", ["rods", "threads"])
 def test_mirrored_strings_run_as_mirror_images(name: str, mirror: tuple[float, float, float]) -> None:
     """No law knows left from right, and IEEE arithmetic is symmetric in the sign: 300 rounds, contacts among them."""
-    model, state = compile_scene(paper_scene(name))
+    model, state = compile_scene(LoadedScene(paper_scene(name)))
     image = after(model, mirrored(state, mirror), 300)
     assert digest_of(mirrored(image, mirror)) == digest_of(after(model, state, 300))
 
@@ -82,7 +83,7 @@ def motley(mirror: tuple[float, float, float]) -> dict[str, Any]:
 
 def test_x_and_y_may_be_exchanged_but_not_y_and_z() -> None:
     """d² is (dx·dx + dy·dy) + dz·dz: exchanging the first two terms changes no bit, the last two round differently."""
-    model, state = compile_scene(paper_scene("rods"))
+    model, state = compile_scene(LoadedScene(paper_scene("rods")))
     expected = after(model, state, 300)
 
     def exchanged(state: State, order: list[int]) -> State:

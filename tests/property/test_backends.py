@@ -15,6 +15,7 @@ from support.strategies import scenes
 
 from atomsim.compiler import compile_scene
 from atomsim.core.model import Model, State
+from atomsim.scene import LoadedScene
 
 pytest.importorskip("numba", reason="the backend is an extra")
 
@@ -44,7 +45,7 @@ def fluid(n_side: int, spacing: float) -> tuple[Model, State]:
 
 @pytest.mark.parametrize("name", PAPER_SCENES)
 def test_scenes_of_the_paper(name: str) -> None:
-    model, state = compile_scene(paper_scene(name))
+    model, state = compile_scene(LoadedScene(paper_scene(name)))
     digest = digest_of(after(model, state, 400))
     for threads in THREADS:
         assert digest_of(run(model, state, 400, threads=threads)) == digest

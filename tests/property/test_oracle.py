@@ -11,6 +11,7 @@ from atomsim.compiler import compile_scene
 from atomsim.core.model import State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
+from atomsim.scene import LoadedScene
 
 CONTACT_ROUNDS = {
     "rods": (190, 260),
@@ -34,7 +35,7 @@ def go_on(world: World, state: State) -> None:
 @pytest.mark.parametrize("name", PAPER_SCENES)
 def test_paper_scene_starts_as_in_the_oracle(name: str) -> None:
     scene = paper_scene(name)
-    model, state = compile_scene(scene)
+    model, state = compile_scene(LoadedScene(scene))
     world = build(scene.model_dump())
     assert digest_of(state) == world.digest()
     world.advance(20)
@@ -45,7 +46,7 @@ def test_paper_scene_starts_as_in_the_oracle(name: str) -> None:
 def test_paper_scene_in_contact_is_the_oracle_bit_for_bit(name: str) -> None:
     scene = paper_scene(name)
     start, stop = CONTACT_ROUNDS[name]
-    model, state = compile_scene(scene)
+    model, state = compile_scene(LoadedScene(scene))
     world = build(scene.model_dump())
     observer = Observer(model)
     stepper = NumpyStepper(model, state)
@@ -62,7 +63,7 @@ def test_paper_scene_in_contact_is_the_oracle_bit_for_bit(name: str) -> None:
 
 def test_everything_at_once_is_the_oracle_bit_for_bit() -> None:
     scene = scene_of(**EVERYTHING)
-    model, state = compile_scene(scene)
+    model, state = compile_scene(LoadedScene(scene))
     world = build(scene.model_dump())
     assert digest_of(state) == world.digest()
     stepper = NumpyStepper(model, state)
@@ -75,7 +76,7 @@ def test_everything_at_once_is_the_oracle_bit_for_bit() -> None:
 
 def test_everything_expands_to_the_pairs_of_the_oracle() -> None:
     scene = scene_of(**EVERYTHING)
-    model, _ = compile_scene(scene)
+    model, _ = compile_scene(LoadedScene(scene))
     world = build(scene.model_dump())
     for table, pairs in zip(model.bonds, world.bonds, strict=True):
         found = zip(table.first.tolist(), table.second.tolist(), table.rest_squared.tolist(), strict=True)
@@ -83,17 +84,17 @@ def test_everything_expands_to_the_pairs_of_the_oracle() -> None:
 
 
 def test_every_declaration_of_everything_changes_the_run() -> None:
-    whole = digest_of(after(*compile_scene(scene_of(**EVERYTHING)), 40))
+    whole = digest_of(after(*compile_scene(LoadedScene(scene_of(**EVERYTHING))), 40))
     for section in ("bonds", "collisions", "forces"):
         for name in EVERYTHING[section]:
             rest = {other: entry for other, entry in EVERYTHING[section].items() if other != name}
             without = scene_of(**{**EVERYTHING, section: rest})
-            assert digest_of(after(*compile_scene(without), 40)) != whole, f"{section}.{name} is idle"
+            assert digest_of(after(*compile_scene(LoadedScene(without)), 40)) != whole, f"{section}.{name} is idle"
 
 
 def test_oracle_notices_one_bit() -> None:
     scene = paper_scene("ring")
-    _, state = compile_scene(scene)
+    _, state = compile_scene(LoadedScene(scene))
     world = build(scene.model_dump())
     x, y, z = world.position[7]
     world.position[7] = (x, y, z + 2.0**-50)

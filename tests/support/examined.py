@@ -13,7 +13,7 @@ NAME = "scene.yaml"
 def examined(scene: LoadedScene | str) -> Examination:
     """Examine a scene, or the text of one that is called `scene.yaml`."""
     loaded = loads(scene, NAME) if isinstance(scene, str) else scene
-    return examine(loaded, *compile_scene(loaded.scene, loaded.source))
+    return examine(loaded, *compile_scene(loaded))
 
 
 def found(scene: LoadedScene | str, code: str | None = None) -> list[Finding]:

@@ -12,6 +12,7 @@ from atomsim.core.digest import state_digest
 from atomsim.core.model import Model, State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.errors import SceneError
+from atomsim.scene import LoadedScene
 from atomsim.scene.language import Scene
 from atomsim.scene.loader import load
 
@@ -32,7 +33,7 @@ def paper_scene(name: str) -> Scene:
 
 def compiled(groups: dict[str, Any], time_step: float = 0.05, **sections: Any) -> tuple[Model, State]:
     """Compile a scene written as Python data."""
-    return compile_scene(scene_of(groups, time_step, **sections))
+    return compile_scene(LoadedScene(scene_of(groups, time_step, **sections)))
 
 
 def without_mistakes(data: dict[str, Any]) -> tuple[Scene, Model, State]:
@@ -40,7 +41,7 @@ def without_mistakes(data: dict[str, Any]) -> tuple[Scene, Model, State]:
     while True:
         scene = scene_of(**data)
         try:
-            return scene, *compile_scene(scene)
+            return scene, *compile_scene(LoadedScene(scene))
         except SceneError as error:
             for section, name in {tuple(problem.path.split(".")[:2]) for problem in error.problems}:
                 data = {**data, section: {key: value for key, value in data[section].items() if key != name}}

@@ -8,6 +8,7 @@ from support.running import atoms_at, scene_of
 from atomsim.compiler import compile_scene
 from atomsim.compiler.colors import PALETTE, atom_color
 from atomsim.errors import SceneError
+from atomsim.scene import LoadedScene
 from atomsim.scene.language.css_colors import CSS_COLORS
 
 GROUPS = {
@@ -38,14 +39,14 @@ def test_colors_of_selections_cover_groups_and_each_other():
     ],
 )
 def test_a_group_is_written_down_in_the_color_of_its_atoms(colors, expected):
-    model, _ = compile_scene(scene_of(GROUPS, render={"colors": colors}))
+    model, _ = compile_scene(LoadedScene(scene_of(GROUPS, render={"colors": colors})))
     assert [group.color for group in model.groups] == expected
 
 
 def test_a_color_for_atoms_that_do_not_exist_is_a_mistake():
     scene = scene_of(GROUPS, render={"colors": {"left[3]": "red"}})
     with pytest.raises(SceneError, match=r"render\.colors\.left\[3\]: `left\[3\]` is out of range"):
-        compile_scene(scene)
+        compile_scene(LoadedScene(scene))
 
 
 def test_the_names_are_those_of_matplotlib():

@@ -19,7 +19,7 @@ from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Wit
 from atomsim.core.pairs import bonded, near
 from atomsim.core.pairs.collisions import n_collision_pairs
 from atomsim.errors import SceneError
-from atomsim.scene.loader import loads
+from atomsim.scene.loader import LoadedScene, loads
 
 PAIR = {"pair": atoms_at((0, 0, 0), (1, 0, 0))}
 
@@ -38,7 +38,7 @@ def test_origins_are_the_lines_of_the_declarations() -> None:
         "collisions:\n  d: {within: a}\nforces:\n  e: {kind: hold}\n"
     )
     loaded = loads(text, "here.yaml")
-    model, _ = compile_scene(loaded.scene, loaded.source)
+    model, _ = compile_scene(loaded)
     origins = [entry.origin for entry in (*model.groups, *model.bonds, *model.collisions, *model.forces)]
     assert [str(origin) for origin in origins] == [
         "groups.a (here.yaml:5)",
@@ -57,7 +57,7 @@ def test_mistakes_are_told_together_with_their_places_in_the_order_of_the_file()
     )
     loaded = loads(text, "here.yaml")
     with pytest.raises(SceneError) as error:
-        compile_scene(loaded.scene, loaded.source)
+        compile_scene(loaded)
     assert str(error.value) == (
         "here.yaml:7:22: forces.late.acts_on: `a[7]` is out of range: a has 3 there, 0 to 2\n"
         "here.yaml:9:46: bonds.far.threshold: nothing is bound: no two atoms are less than 0.5 apart"
@@ -292,7 +292,7 @@ def test_a_threshold_that_binds_too_much(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_million_colliding_atoms_compile_without_their_pairs() -> None:
     scene = scene_of(MILLION, collisions={"c": {"within": "a"}})
     tracemalloc.start()
-    model, _ = compile_scene(scene)
+    model, _ = compile_scene(LoadedScene(scene))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     (block,) = model.collisions[0].blocks

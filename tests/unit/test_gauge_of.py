@@ -16,6 +16,7 @@ from atomsim.core.gauges.block import Block
 from atomsim.core.gauges.meter import Meter
 from atomsim.core.observables import Observer
 from atomsim.core.simulation import frame_of
+from atomsim.scene import LoadedScene
 from atomsim.scene.language.measures import QUANTITIES, QuantityName, parse_measure
 
 SCENE = scene_of(
@@ -31,7 +32,7 @@ SCENE = scene_of(
     collisions={"land": {"between": ["ring", "floor"]}, "hit": {"between": ["ball", ["ring", "floor"]]}},
     render={"camera": {"up": "y"}},
 )
-MODEL, STATE = compile_scene(SCENE)
+MODEL, STATE = compile_scene(LoadedScene(SCENE))
 SUBJECT = Subject.compiled(SCENE, MODEL, STATE)
 
 

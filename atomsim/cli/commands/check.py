@@ -46,7 +46,7 @@ def check(
     for path in scenes:
         try:
             loaded = load(path, settings or ())
-            model, state = compile_scene(loaded.scene, loaded.source)
+            model, state = compile_scene(loaded)
         except SceneError as error:
             n_wrong += 1
             tell(with_remedies(error))

@@ -112,7 +112,7 @@ def _computed(scene: Path, backend: str = "auto", threads: int | None = None) ->
     from atomsim.scene import load
 
     loaded = load(scene)
-    model, state = compile_scene(loaded.scene, loaded.source)
+    model, state = compile_scene(loaded)
     rounds = loaded.scene.rounds
     make_stepper = choose(backend, threads, model, rounds).make_stepper
     return model, simulate(model, state, rounds, loaded.scene.record_every, make_stepper)

@@ -60,7 +60,7 @@ class Run:
 def run(scene: str, *overrides: str) -> Run:
     """Compute a scene of the paper with `--set` changes, or return what was computed before."""
     loaded = load(SCENES / f"{scene}.yaml", overrides=overrides)
-    model, state = compile_scene(loaded.scene, loaded.source)
+    model, state = compile_scene(loaded)
     frames = list(simulate(model, state, loaded.scene.rounds, loaded.scene.record_every))
     return Run(
         model=model,
