@@ -11,6 +11,7 @@ In a notebook:
     atomsim.run(loaded, "out.h5")                        # or record a whole run
     with atomsim.Trajectory("out.h5") as trajectory:     # a sequence of frames
         trajectory[-1].position
+    atomsim.measure("out.h5", "height of left")          # numbers over its frames
     atomsim.render("out.h5", "out.png")                  # the strip
 
 Names are loaded when they are first used, so that `import atomsim` costs nothing.
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from atomsim.core.simulate import simulate
     from atomsim.errors import AtomsimError, BlowUpError, InputError, RunError, SceneError
     from atomsim.scene.loader import LoadedScene, load, loads
+    from atomsim.tasks.measure import measure
     from atomsim.tasks.render import render, render_frames
     from atomsim.tasks.run import resume, run
     from atomsim.tasks.simulation import SceneSimulation as Simulation
@@ -47,6 +49,7 @@ _HOMES = {
     "Trajectory": "atomsim.trajectory",
     "load": "atomsim.scene.loader",
     "loads": "atomsim.scene.loader",
+    "measure": "atomsim.tasks.measure",
     "render": "atomsim.tasks.render",
     "render_frames": "atomsim.tasks.render",
     "resume": "atomsim.tasks.run",
@@ -69,6 +72,7 @@ __all__ = [
     "compile",
     "load",
     "loads",
+    "measure",
     "render",
     "render_frames",
     "resume",

@@ -7,8 +7,10 @@ import errno
 import fcntl
 import os
 import stat
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from atomsim.errors import InputError, Remedy, RunError
 
@@ -170,10 +172,11 @@ def _inherit_access(temporary: Path, path: Path) -> None:
         temporary.chmod(mode)
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file, or the one behind a link, so that its name never stands for half of it.
+@contextlib.contextmanager
+def whole_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a file to be written, or the one behind a link, so that its name never stands for half of it.
 
-    It is written under another name first, then moved into place.
+    It is written under another name first, and moved into place when all went well.
 
     Raises:
         RunError: the disk does not take it; what stood under the name before is untouched.
@@ -184,15 +187,22 @@ def write_whole(path: Path, content: bytes) -> None:
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         temporary = beside(target, f".{os.getpid()}.tmp")
         try:
-            temporary.write_bytes(content)
+            with temporary.open("wb") as file:
+                yield file
             _inherit_access(temporary, target)
             temporary.replace(target)
-        except OSError:
+        except BaseException:
             with contextlib.suppress(OSError):
                 temporary.unlink(missing_ok=True)
             raise
     except OSError as error:
         raise RunError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file that is at hand whole; see `whole_file`."""
+    with whole_file(path) as file:
+        file.write(content)
 
 
 def sync_folder(folder: Path) -> None:

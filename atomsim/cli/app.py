@@ -7,6 +7,7 @@ import typer
 from atomsim.cli.commands.check import check
 from atomsim.cli.commands.compare import compare
 from atomsim.cli.commands.golden import golden
+from atomsim.cli.commands.measure import measure
 from atomsim.cli.commands.recover import recover
 from atomsim.cli.commands.render import render
 from atomsim.cli.commands.run import run
@@ -26,7 +27,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (scenes, new, run, render, check, show, compare, verify, recover, schema):
+for command in (scenes, new, run, render, measure, check, show, compare, verify, recover, schema):
     app.command()(command)
 app.add_typer(golden, name="golden")
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from atomsim.compiler import compile_scene
+from atomsim.compiler.selections import lay_out
 from atomsim.compiler.shapes import count_atoms
 from atomsim.core.model import Model, State
 from atomsim.errors import InputError, SceneError
@@ -31,6 +32,23 @@ def scene_inside(header: Header, path: Path) -> LoadedScene:
         return loads(header.scene, header.scene_name)
     except SceneError as error:
         raise _broken(path, error) from None
+
+
+def laid_out_inside(header: Header, path: Path) -> LoadedScene:
+    """Return the scene that a trajectory holds, with the groups that the frames have: enough to find atoms by name.
+
+    Args:
+        header: what the trajectory says besides its frames.
+        path: the trajectory, for messages.
+
+    Raises:
+        InputError: it is no valid scene, or not that of the frames.
+    """
+    loaded = scene_inside(header, path)
+    spans = [(name, layout.start, layout.stop) for name, layout in lay_out(loaded.scene).items()]
+    if spans != [(group.name, group.start, group.stop) for group in header.groups]:
+        raise _misleading(path, "groups")
+    return loaded
 
 
 def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, State]:

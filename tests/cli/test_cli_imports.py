@@ -70,6 +70,7 @@ def test_plugins_of_others_do_not_read_scenes(tmp_path, monkeypatch):
 def test_only_pictures_load_matplotlib(tmp_path):
     assert "matplotlib" not in loaded(tmp_path, "run", RODS, "--rounds", "50")
     assert "matplotlib" not in loaded(tmp_path, "show", "out.h5")
+    assert "matplotlib" not in loaded(tmp_path, "measure", "out.h5", "energy")
     assert "matplotlib" in loaded(tmp_path, "render", "out.h5", "--size", "64x48")
 
 

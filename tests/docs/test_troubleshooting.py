@@ -79,6 +79,8 @@ def test_no_message_of_the_code_is_missing_on_the_page() -> None:
     assert missing == []
 
 
-@pytest.mark.parametrize("heading", ["show", "render", "compare", "verify", "recover", "run", "check", "golden"])
+@pytest.mark.parametrize(
+    "heading", ["show", "render", "measure", "compare", "verify", "recover", "run", "check", "golden"]
+)
 def test_every_command_has_its_part(heading: str) -> None:
     assert re.search(rf"^##.*{heading}", PAGE, re.MULTILINE)

@@ -1,0 +1,118 @@
+"""Measures over frames, as rows that stream by or as arrays that are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from atomsim.core.gauges.block import Block, Gauge, blocks
+from atomsim.core.gauges.meter import Meter
+from atomsim.core.gauges.recorded import Recorded
+from atomsim.core.model import Floats, Indices
+from atomsim.scene.language.measures import Measure, MeasureSyntaxError, parse_measure
+from atomsim.scene.language.selection import SelectionSyntaxError
+from atomsim.trajectory import Trajectory
+
+
+class Rows(NamedTuple):
+    """Some frames measured.
+
+    Attributes:
+        round: of each frame, (n_frames,) int64.
+        time: round · τ, (n_frames,) float64.
+        values: what was measured, (n_frames, n_columns) float64.
+    """
+
+    round: Indices
+    time: Floats
+    values: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured(Mapping[str, Floats]):
+    """Measures of a run, by their text: (n_frames,) each, or (n_frames, 3) of a vector.
+
+    Attributes:
+        round: of each frame, (n_frames,) int64.
+        time: round · τ, (n_frames,) float64.
+        measures: what was measured, in order.
+        table: the numbers of all of them side by side, (n_frames, n_columns) float64.
+    """
+
+    round: Indices
+    time: Floats
+    measures: tuple[Measure, ...]
+    table: Floats
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """What each column of `table` is: a measure that is one number, or a component of a vector."""
+        return columns_of(self.measures)
+
+    def __getitem__(self, text: str) -> Floats:
+        """Return a measure, or a component of one, however it is spelled.
+
+        Raises:
+            KeyError: it was not measured.
+        """
+        try:
+            names = parse_measure(text).columns
+            places = [self.columns.index(name) for name in names]
+        except (MeasureSyntaxError, SelectionSyntaxError, ValueError):
+            raise KeyError(text) from None
+        return self.table[:, places[0]] if len(places) == 1 else self.table[:, places]
+
+    def __iter__(self) -> Iterator[str]:
+        return map(str, self.measures)
+
+    def __len__(self) -> int:
+        return len(self.measures)
+
+
+def columns_of(measures: Iterable[Measure]) -> tuple[str, ...]:
+    """Return the names of the columns that measures give together."""
+    return tuple(name for measure in measures for name in measure.columns)
+
+
+def rows(trajectory: Trajectory, gauges: Sequence[Gauge], frames: Sequence[int] | None = None) -> Iterator[Rows]:
+    """Measure frame after frame, a block at a time, so that memory does not grow with their number.
+
+    Args:
+        trajectory: the run.
+        gauges: what to measure.
+        frames: which frames, ascending; all of them by default.
+    """
+    chosen = np.arange(len(trajectory)) if frames is None else np.array(frames, dtype=np.int64)
+    meter, rounds, time = Meter(gauges), trajectory.rounds, trajectory.time
+    start = 0
+    # Turns that are counted are counted from the first frame on, whichever of them are asked for.
+    looked_at = np.arange(len(trajectory)) if meter.is_running else chosen
+    for block in _blocks(trajectory, gauges, looked_at):
+        values = meter.take(block)
+        index = looked_at[start : start + block.n_frames]
+        start += block.n_frames
+        is_asked = np.isin(index, chosen, assume_unique=True)
+        if is_asked.any():
+            asked = index[is_asked]
+            yield Rows(rounds[asked], time[asked], values[is_asked])
+
+
+def measured(
+    trajectory: Trajectory, measures: Sequence[Measure], gauges: Sequence[Gauge], frames: Sequence[int] | None = None
+) -> Measured:
+    """Measure frames and keep the numbers; see `rows`."""
+    parts = list(rows(trajectory, gauges, frames))
+    joined = Rows(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    return Measured(joined.round, joined.time, tuple(measures), joined.values)
+
+
+def _blocks(trajectory: Trajectory, gauges: Sequence[Gauge], frames: Indices) -> Iterator[Block]:
+    """Read frames; what was observed when they were computed is known without reading them."""
+    if all(isinstance(gauge, Recorded) for gauge in gauges):
+        nothing = np.empty((3, 0, len(frames)))
+        yield Block(nothing, nothing, {name: series[frames] for name, series in trajectory.observables.items()})
+        return
+    yield from blocks(trajectory[int(frame)] for frame in frames)
