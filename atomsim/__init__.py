@@ -83,8 +83,11 @@ __all__ = [
 
 def compile(loaded: LoadedScene) -> tuple[Model, State]:
     """Compile a loaded scene to flat force tables and its first state; see `atomsim.compiler.compile_scene`."""
+    from atomsim import arguments
     from atomsim.compiler import compile_scene
+    from atomsim.scene.loader import LoadedScene
 
+    arguments.instance("loaded", loaded, LoadedScene, arguments.LOADED_SCENE)
     return compile_scene(loaded)
 
 

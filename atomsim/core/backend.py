@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
+from atomsim import arguments
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.numba_backend import cache
 from atomsim.core.numpy_backend.stepper import NumpyStepper
@@ -88,10 +89,9 @@ def choose(name: str, threads: int | None, model: Model, rounds_ahead: int) -> B
     Raises:
         InputError: an unknown name, an impossible number of threads, or Numba is asked for and missing or broken.
     """
-    if name not in BACKENDS:
-        raise InputError(f"there is no backend `{name}`: choose {', '.join(BACKENDS[:-1])} or {BACKENDS[-1]}")
-    if threads is not None and not 1 <= threads <= MAX_THREADS:
-        raise InputError(f"the number of threads must be 1 to {MAX_THREADS} (got {threads})")
+    arguments.choice("backend", name, BACKENDS)
+    if threads is not None:
+        threads = arguments.whole("threads", threads, most=MAX_THREADS)
     if name == "numpy":
         if threads is not None and threads > 1:
             raise InputError("the NumPy backend has one thread; several need Numba: pip install 'atomsim[fast]'")

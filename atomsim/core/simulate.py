@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from atomsim import arguments
 from atomsim.core.backend import MakeStepper, choose
 from atomsim.core.model import Frame, Model, State
 from atomsim.core.pace import Report
@@ -20,7 +21,7 @@ def simulate(
     report: Report | None = None,
     first: State | None = None,
 ) -> Iterator[Frame]:
-    """Yield the frames of a run: its first state, every `record_every` rounds, and its last round.
+    """Return the frames of a run: its first state, every `record_every` rounds, and its last round.
 
     Args:
         model: the compiled scene.
@@ -33,19 +34,26 @@ def simulate(
             true, the run ends.
         first: where the scene begins, if `state` is a later round; what is said of a blow-up depends on it.
 
-    Yields:
-        Frames in order of rounds.
+    Returns:
+        Frames in order of rounds, computed as they are asked for.
 
     Raises:
-        InputError: an unknown backend, or an impossible number of threads.
-        BlowUpError: a number left the finite, an atom flew off, or energy came from nowhere; all frames before have
-            been yielded.
+        InputError: an argument that will not do.
+        BlowUpError: while the frames are asked for, a number left the finite, an atom flew off, or energy came from
+            nowhere; all frames before have been yielded.
     """
-    if isinstance(backend, str):
+    arguments.instance("model", model, Model, arguments.MODEL)
+    arguments.instance("state", state, State, arguments.STATE)
+    rounds = arguments.whole("rounds", rounds, least=0)
+    record_every = arguments.whole("record_every", record_every)
+    if not callable(backend):
         backend = choose(backend, threads, model, rounds - state.round_index).make_stepper
-    simulation = Simulation(model, state, backend, first)
+    return _frames(Simulation(model, state, backend, first), rounds, record_every, report)
+
+
+def _frames(simulation: Simulation, rounds: int, record_every: int, report: Report | None) -> Iterator[Frame]:
     yield simulation.frame()
-    if report is not None and report(state.round_index):
+    if report is not None and report(simulation.round_index):
         return
     while simulation.round_index < rounds:
         next_round = min(rounds, (simulation.round_index // record_every + 1) * record_every)

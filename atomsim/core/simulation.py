@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from atomsim import arguments
 from atomsim.core.backend import MakeStepper, Stepper
 from atomsim.core.diagnosis.blowup import explain, loss, not_again
 from atomsim.core.diagnosis.energy import EnergyBudget
@@ -127,8 +128,7 @@ class Simulation:
             BlowUpError: a number left the finite, an atom flew off, or energy came from nowhere; the simulation stands
                 where it stood before the step.
         """
-        if n_rounds < 0:
-            raise InputError(f"the number of rounds must be 0 or more (got {n_rounds})")
+        n_rounds = arguments.whole("n_rounds", n_rounds, least=0)
         before = self._state
         n_done, goes_on = self._pace.advance(self._stepper, before.round_index, n_rounds, report)
         if n_done:

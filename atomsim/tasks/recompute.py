@@ -16,6 +16,7 @@ from atomsim.core.model import Model, State
 from atomsim.errors import InputError, SceneError
 from atomsim.scene import LoadedScene, loads
 from atomsim.trajectory import Header
+from atomsim.version import __version__
 
 
 def scene_inside(header: Header, path: Path) -> LoadedScene:
@@ -31,7 +32,7 @@ def scene_inside(header: Header, path: Path) -> LoadedScene:
     try:
         return loads(header.scene, header.scene_name)
     except SceneError as error:
-        raise _broken(path, error) from None
+        raise _broken(header, path, error) from None
 
 
 def laid_out_inside(header: Header, path: Path) -> LoadedScene:
@@ -64,11 +65,11 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
     loaded = scene_inside(header, path)
     n_atoms = sum(count_atoms(group) for group in loaded.scene.groups.values())
     if n_atoms != header.n_atoms:  # asked before any are made: a liar may ask for as many as memory holds
-        raise _misleading(path, "atoms")
+        raise _misleading(header, path, "atoms")
     try:
         model, state = compile_scene(loaded)
     except SceneError as error:
-        raise _broken(path, error) from None
+        raise _broken(header, path, error) from None
     recompiled = Header.of(
         model,
         scene_text=header.scene,
@@ -78,17 +79,27 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
     )
     differing = _differing(header, recompiled)
     if differing is not None:
-        raise _misleading(path, differing)
+        raise _misleading(header, path, differing)
     return loaded, model, state
 
 
-def _broken(path: Path, error: SceneError) -> InputError:
-    problem = error.problems[0]
-    return InputError(f"{path}: damaged, or not a trajectory of atomsim (the scene inside: {problem})")
+def _broken(header: Header, path: Path, error: SceneError) -> InputError:
+    reason = f"the scene inside: {error.problems[0]}"
+    return _later(header, path, reason) or InputError(f"{path}: damaged, or not a trajectory of atomsim ({reason})")
 
 
-def _misleading(path: Path, what: str) -> InputError:
-    return InputError(f"{path}: damaged, or made to mislead: the scene inside has other {what} than the frames")
+def _misleading(header: Header, path: Path, what: str) -> InputError:
+    reason = f"the scene inside has other {what} than the frames"
+    return _later(header, path, reason) or InputError(f"{path}: damaged, or made to mislead: {reason}")
+
+
+def _later(header: Header, path: Path, reason: str) -> InputError | None:
+    """Return what is wrong with a scene of a later version of the language; None if it is of this one or an earlier."""
+    if not header.versions.is_later:
+        return None
+    return InputError(
+        f"{path}: written by atomsim {header.versions.program}, this is {__version__}: a later one is needed ({reason})"
+    )
 
 
 def _differing(one: Header, other: Header) -> str | None:

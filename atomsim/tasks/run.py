@@ -9,18 +9,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
+from atomsim import arguments
 from atomsim.compiler import compile_scene
 from atomsim.core.backend import Backend, choose
 from atomsim.core.diagnosis.tunnelling import SpeedWatch
 from atomsim.core.free_memory import readable_bytes
 from atomsim.core.model import Model, State
 from atomsim.core.simulate import simulate
+from atomsim.disk import behind
 from atomsim.errors import BlowUpError, InputError, Remedy, RunError
 from atomsim.findings.before.diagnose import examine
 from atomsim.scene import LoadedScene
 from atomsim.scene.difference import differences
 from atomsim.tasks.recompute import compile_inside
-from atomsim.trajectory import End, Header, Recorder, check_target, trajectory_bytes
+from atomsim.trajectory import End, Header, Recorder, check_target, later_version, trajectory_bytes
 
 Report: TypeAlias = Callable[[int, int], None]
 """Called with the round reached and the round to reach, at the start and then several times a second."""
@@ -86,11 +88,10 @@ def run(
         RunError: it cannot be written.
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
+    arguments.instance("scene", scene, LoadedScene, arguments.LOADED_SCENE)
+    path = arguments.path("path", path)
+    rounds = scene.scene.rounds if rounds is None else arguments.whole("rounds", rounds)
     check_target(path, replace=replace)  # before anything that takes long
-    if rounds is None:
-        rounds = scene.scene.rounds
-    if rounds < 1:
-        raise InputError(f"the number of rounds must be 1 or more (got {rounds})")
     model, state = compile_scene(scene)
     if warn is not None:
         for found in examine(scene, model, state).findings:
@@ -105,7 +106,7 @@ def run(
         record_every=scene.scene.record_every,
         compress=compress,
     )
-    _require_disk(Path(path), header)
+    _require_disk(path, header)
     chosen = choose(backend, threads, model, header.rounds)
     with Recorder(path, header, replace=replace) as recorder:
         return _record(recorder, model, state, chosen, report)
@@ -119,6 +120,7 @@ def resume(
     backend: str = "auto",
     threads: int | None = None,
     report: Report | None = None,
+    warn: Callable[[str], None] | None = None,
 ) -> Outcome:
     """Go on with a trajectory from its last frame; the scene is inside it.
 
@@ -131,6 +133,7 @@ def resume(
         backend: as for `run`; it may be another one than before.
         threads: how many threads to use.
         report: hears how far the run is.
+        warn: hears, before the run goes on, what to know of the trajectory.
 
     Raises:
         InputError: there is no such trajectory, it is damaged, it is one of another scene, or it has done these rounds
@@ -138,12 +141,18 @@ def resume(
         RunError: it cannot be written, or another run writes it.
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
-    path = Path(path)
+    path = arguments.path("path", path)
+    if rounds is not None:
+        rounds = arguments.whole("rounds", rounds)
+    if scene is not None:
+        arguments.instance("scene", scene, LoadedScene, arguments.LOADED_SCENE)
     compiled: list[tuple[Model, State]] = []
     chosen: list[Backend] = []
 
     def accept(header: Header) -> None:
         inside, model, first = compile_inside(header, path)
+        if warn is not None and header.versions.is_later:
+            warn(str(later_version(path, header.versions)))
         if scene is not None:
             _require_same(inside, scene, path)
         _require_disk(path, header)
@@ -170,7 +179,7 @@ def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
 def _require_disk(path: Path, header: Header) -> None:
     """Refuse a run whose frames do not fit on the disk; while the file is built they are there twice."""
     needed = 2 * trajectory_bytes(header.n_atoms, header.rounds, header.record_every, header.memory)
-    folder = path.absolute().parent
+    folder = behind(path.absolute()).parent
     if not folder.is_dir():
         return  # the recorder says so better
     free = shutil.disk_usage(folder).free

@@ -2,7 +2,7 @@
 
 from atomsim.trajectory.header import End, Header, count_frames, trajectory_bytes
 from atomsim.trajectory.journal.form import journal_path
-from atomsim.trajectory.reader import Frames, Trajectory
+from atomsim.trajectory.reader import Frames, Trajectory, later_version
 from atomsim.trajectory.recorder import Recorder, check_target, recover
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "check_target",
     "count_frames",
     "journal_path",
+    "later_version",
     "recover",
     "trajectory_bytes",
 ]

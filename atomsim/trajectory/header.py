@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import re
 import sys
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -48,6 +49,11 @@ class Versions:
     python: str
     platform: str
 
+    @property
+    def is_later(self) -> bool:
+        """Whether the program is a later one than this, which may compute something else."""
+        return _release(self.program) > _release(__version__)
+
     @classmethod
     def here(cls) -> Versions:
         """Return the versions in use now."""
@@ -57,6 +63,12 @@ class Versions:
             python=".".join(str(part) for part in sys.version_info[:3]),
             platform=f"{platform.system()} {platform.machine()}",
         )
+
+
+def _release(version: str) -> list[int]:
+    """Return the numbers of a version; of a text that is none, nothing, which is never later."""
+    found = re.match(r"[0-9]{1,9}(\.[0-9]{1,9})*", version)
+    return [int(number) for number in found[0].split(".")] if found else []
 
 
 @dataclass(frozen=True, slots=True, eq=False)

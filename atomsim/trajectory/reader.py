@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -11,13 +12,15 @@ from typing import Any, Protocol, overload
 
 import numpy as np
 
+from atomsim import arguments
 from atomsim.core.model import Floats, Frame, Indices, State
 from atomsim.errors import InputError, Notice, Remedy
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
-from atomsim.trajectory.header import End, Header
+from atomsim.trajectory.header import End, Header, Versions
 from atomsim.trajectory.journal.form import HEAD, journal_path
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
+from atomsim.version import __version__
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -25,6 +28,14 @@ _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 def is_trajectory(path: Path) -> bool:
     """Tell whether a regular file begins as a trajectory or a journal does; what follows may be damaged."""
     return first_bytes(path, 8) in (HEAD, _HDF5_SIGNATURE)
+
+
+def later_version(path: Path, versions: Versions) -> Notice:
+    """Return what to know of a trajectory that a later version of the program wrote."""
+    return Notice(
+        f"{path}: written by atomsim {versions.program}, this is {__version__}: what the two compute may differ, and "
+        "what is new in the file is not read"
+    )
 
 
 class _Source(Protocol):
@@ -62,7 +73,8 @@ class Frames(Sequence[Frame]):
 class Trajectory(Sequence[Frame]):
     """The frames of a run, read one by one from `out.h5`, or from its journal if there is nothing else.
 
-    A context manager. Every frame is checked against its digest when it is read.
+    A context manager. Every frame is checked against its digest when it is read. Several threads may read one
+    trajectory; it may be pickled to other processes, which open it again.
 
     Args:
         path: the trajectory as the user named it.
@@ -81,7 +93,9 @@ class Trajectory(Sequence[Frame]):
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
+        self.path = arguments.path("path", path)
+        self._lock = threading.RLock()
+        self._is_closed = False
         journal = journal_path(self.path)
         with reading(self.path):
             self.has_journal = journal.exists()
@@ -112,6 +126,7 @@ class Trajectory(Sequence[Frame]):
         return Finished(found)
 
     def __enter__(self) -> Trajectory:
+        self._require_open()
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
@@ -119,7 +134,18 @@ class Trajectory(Sequence[Frame]):
 
     def close(self) -> None:
         """Close the file; what was read stays."""
-        self._source.close()
+        with self._lock:
+            self._is_closed = True
+            self._source.close()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the path alone: whoever unpickles opens the file again, and it must hold these frames."""
+        self._require_open()
+        return _open_again, (str(self.path.absolute()), len(self), self.digests[-1])
+
+    def _require_open(self) -> None:
+        if self._is_closed:
+            raise InputError(f"{self.path}: this trajectory was closed; use it inside its `with`, or open it again")
 
     def __len__(self) -> int:
         return len(self._source.series)
@@ -161,6 +187,9 @@ class Trajectory(Sequence[Frame]):
     def notices(self) -> list[Notice]:
         """Return what a user should know about where the frames come from; empty for a finished file alone."""
         notices = []
+        written_by = self.header.versions
+        if written_by.is_later:
+            notices.append(later_version(self.path, written_by))
         if self.from_journal:
             notices.append(
                 Notice(
@@ -175,7 +204,7 @@ class Trajectory(Sequence[Frame]):
                     (Remedy("go on", self.path),),
                 )
             )
-        if self.lost_bytes:
+        if self.lost_bytes and not written_by.is_later:
             torn = f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out"
             notices.append(Notice(torn))
         return notices
@@ -190,9 +219,23 @@ class Trajectory(Sequence[Frame]):
             pass
 
     def _frame(self, index: int) -> Frame:
-        with reading(self._found):
+        with self._lock, reading(self._found):
+            self._require_open()
             state = self._source.state(index)
             is_finite = np.isfinite(state.position).all() and np.isfinite(state.velocity).all()
             if not is_finite and self.end.kind != "blew up":
                 raise DamageError(f"damaged: the state at round {state.round_index} is not finite")
             return frame_of(self._source.series[index], state, self.header.time_step)
+
+
+def _open_again(path: str, n_frames: int, last_digest: str) -> Trajectory:
+    """Return the trajectory that was pickled.
+
+    Raises:
+        InputError: it cannot be read, or is another one now.
+    """
+    trajectory = Trajectory(path)
+    if trajectory.digests[n_frames - 1 : n_frames] != [last_digest]:
+        trajectory.close()
+        raise InputError(f"{path}: holds another run than when it was pickled")
+    return trajectory

@@ -119,9 +119,9 @@ def test_damaged_kernels_are_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("name", "threads", "message"),
     [
-        ("cuda", None, "there is no backend `cuda`: choose auto, numpy or numba"),
-        ("auto", 0, "the number of threads must be 1 to 256 (got 0)"),
-        ("numba", 257, "the number of threads must be 1 to 256 (got 257)"),
+        ("cuda", None, "backend: needs auto, numpy or numba (got 'cuda')"),
+        ("auto", 0, "threads: needs a whole number from 1 to 256 (got 0)"),
+        ("numba", 257, "threads: needs a whole number from 1 to 256 (got 257)"),
         ("numpy", 2, "the NumPy backend has one thread; several need Numba: pip install 'atomsim[fast]'"),
     ],
 )

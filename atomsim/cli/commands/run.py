@@ -73,7 +73,13 @@ def run(
 
         if resume is not None:
             outcome = record.resume(
-                resume, rounds=rounds, scene=loaded, backend=backend, threads=threads, report=report
+                resume,
+                rounds=rounds,
+                scene=loaded,
+                backend=backend,
+                threads=threads,
+                report=report,
+                warn=None if quiet else _warn,
             )
         elif loaded is not None:
             outcome = record.run(

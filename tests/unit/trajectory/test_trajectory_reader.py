@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import os
+import pickle
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +19,8 @@ from sample_run import TIME_STEP, frame, header, holds, is_same_frame, killed, r
 from atomsim.errors import InputError
 from atomsim.trajectory import End, Recorder, Trajectory
 from atomsim.trajectory.document import document
+from atomsim.trajectory.header import Versions
+from atomsim.version import __version__
 
 
 @pytest.fixture(params=["finished", "compressed", "journal"])
@@ -157,3 +163,104 @@ def test_what_cannot_be_a_trajectory(tmp_path: Path) -> None:
         with pytest.raises(InputError) as caught:
             Trajectory(path)
         assert str(caught.value) == f"{path}: {message}"
+
+
+# --- Closed, pickled, shared ---
+
+
+def test_a_closed_trajectory_says_so_every_time(path: Path) -> None:
+    """Also for the frame that was read last, and for one whose neighbours were."""
+    with Trajectory(path) as trajectory:
+        middle = trajectory[1:3]
+        _ = middle[0], trajectory[-1]
+    uses = (
+        lambda: middle[0],
+        lambda: middle[1],
+        lambda: list(middle),
+        lambda: trajectory[-1],
+        lambda: list(trajectory),
+        trajectory.verify,
+        trajectory.__enter__,
+        lambda: pickle.dumps(trajectory),
+    )
+    for use in uses:
+        with pytest.raises(InputError) as caught:
+            use()
+        assert str(caught.value) == (f"{path}: this trajectory was closed; use it inside its `with`, or open it again")
+    assert (len(middle), trajectory.rounds.tolist()) == (2, [0, 10, 20, 30, 40])  # what was read stays
+
+
+def test_a_trajectory_may_be_pickled(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also by a relative path, to a process that is in another folder."""
+    monkeypatch.chdir(path.parent)
+    with Trajectory(path.name) as trajectory:
+        text = pickle.dumps((trajectory, trajectory[3:]))
+        frames = pickle.loads(pickle.dumps(list(trajectory)))
+        twin = copy.copy(trajectory)
+    with twin:
+        assert holds(twin, [0, 10, 20, 30, 40])
+    monkeypatch.chdir("/")
+    again, last = pickle.loads(text)
+    with again:
+        assert holds(again, [0, 10, 20, 30, 40])
+        assert is_same_frame(last[0], frame(30))
+        assert is_same_frame(frames[3], frame(30))
+
+
+def test_a_pickle_is_not_opened_as_another_run(tmp_path: Path) -> None:
+    path = record(tmp_path / "out.h5", header(40))
+    with Trajectory(path) as trajectory:
+        text = pickle.dumps(trajectory)
+    record(path, header(30), replace=True)
+    with pytest.raises(InputError, match=r"out\.h5: holds another run than when it was pickled$"):
+        pickle.loads(text)
+    path.unlink()
+    with pytest.raises(InputError, match=r"out\.h5: no such file$"):
+        pickle.loads(text)
+
+
+@pytest.mark.parametrize("compress", [False, True])
+def test_many_threads_may_read_one_trajectory(tmp_path: Path, compress: bool) -> None:
+    path = record(tmp_path / "out.h5", header(2_000, compress=compress))
+    expected = [frame(10 * i) for i in range(201)]
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with Trajectory(path) as trajectory, ThreadPoolExecutor(8) as pool:
+            places = [(37 * i) % 201 for i in range(1_000)]
+            found = list(pool.map(trajectory.__getitem__, places))
+    finally:
+        sys.setswitchinterval(interval)
+    assert all(is_same_frame(one, expected[place]) for one, place in zip(found, places, strict=True))
+
+
+def test_closing_while_another_thread_reads(path: Path) -> None:
+    """The reader gets its frames or hears that the trajectory was closed, and nothing else."""
+    for _ in range(20):
+        trajectory = Trajectory(path)
+        with ThreadPoolExecutor(2) as pool:
+            reading = pool.submit(list, trajectory)
+            pool.submit(trajectory.close)
+        error = reading.exception()
+        assert error is None or "was closed" in str(error)
+
+
+# --- Other versions ---
+
+
+@pytest.mark.parametrize(
+    ("version", "is_later"),
+    [("9.0.0", True), ("0.1.0", False), ("0.0.9", False), ("0.1.1rc1", True), ("?", False), ("9" * 10_000, True)],
+)
+def test_a_later_version_is_named(tmp_path: Path, version: str, is_later: bool) -> None:
+    path = record(tmp_path / "out.h5", replace(header(40), versions=replace(Versions.here(), program=version)))
+    with Trajectory(path) as trajectory:
+        notices = [str(notice) for notice in trajectory.notices()]
+    assert notices == (
+        [
+            f"{path}: written by atomsim {version}, this is {__version__}: what the two compute may differ, "
+            "and what is new in the file is not read"
+        ]
+        if is_later
+        else []
+    )
