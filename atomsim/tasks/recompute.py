@@ -48,7 +48,7 @@ def laid_out_inside(header: Header, path: Path) -> LoadedScene:
     loaded = scene_inside(header, path)
     spans = [(name, layout.start, layout.stop) for name, layout in lay_out(loaded.scene).items()]
     if spans != [(group.name, group.start, group.stop) for group in header.groups]:
-        raise _misleading(path, "groups")
+        raise _misleading(header, path, "groups")
     return loaded
 
 
