@@ -2,12 +2,13 @@
 
 import errno
 import os
+import resource
 from pathlib import Path
 
 import pytest
 
 from atomsim import disk
-from atomsim.disk import behind, write_whole
+from atomsim.disk import behind, whole_file, write_whole
 from atomsim.errors import InputError, RunError
 
 
@@ -24,16 +25,27 @@ def test_a_file_is_replaced_whole(path):
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_a_full_disk_leaves_the_old_file_and_no_litter(path, monkeypatch):
-    def half(self: Path, content: bytes) -> int:
-        with self.open("wb") as file:
-            file.write(content[:1])
-        raise OSError(errno.ENOSPC, "No space left on device")
+def test_a_disk_that_takes_no_more_leaves_the_old_file_and_no_litter(path):
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2, limits[1]))
+    try:
+        with pytest.raises(RunError) as caught:
+            write_whole(path, b"new")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert str(caught.value) == f"{path}: cannot be written: File too large"
+    assert path.read_bytes() == b"old"
+    assert list(path.parent.iterdir()) == [path]
 
-    monkeypatch.setattr(Path, "write_bytes", half)
-    with pytest.raises(RunError) as caught:
-        write_whole(path, b"new")
-    assert str(caught.value) == f"{path}: cannot be written: No space left on device"
+
+def test_what_breaks_off_leaves_the_old_file_and_no_litter(path):
+    def break_off():
+        with whole_file(path) as file:
+            file.write(b"half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        break_off()
     assert path.read_bytes() == b"old"
     assert list(path.parent.iterdir()) == [path]
 
