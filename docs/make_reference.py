@@ -105,7 +105,7 @@ EXIT_CODES = """\
 | 1 | the run failed (disk, memory), or a comparison, a verification or a golden differs |
 | 2 | bad usage or bad input: a scene, a path, a file that is not ours |
 | 3 | the simulation blew up; the frames before are kept |
-| 130 | interrupted by Ctrl-C, after writing what there is (143: terminated) |
+| 130 | interrupted by Ctrl-C, after writing what there is (143: terminated, 129: its terminal was closed) |
 
 Results go to standard output; progress and messages go to standard error.
 """

@@ -107,7 +107,8 @@ class _Session:
         self._exit_code = 0
         self._last = ""
         self._names: dict[str, Any] = {"__name__": "__main__"}
-        self._environment = os.environ | {
+        self._environment = {
+            "HOME": str(Path.home()),
             "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"])),
             "COLUMNS": "120",
         }

@@ -7,7 +7,8 @@ import os
 import sys
 from pathlib import Path
 
-INTERRUPTED = 130
+FAILED, INTERRUPTED = 1, 130
+"""The exit codes of what is no error of ours."""
 
 OBJECTS_PER_COLLECTION = 100_000
 """Loading modules makes many objects and no garbage; looking for it takes some hundredths of a command's start."""
@@ -19,30 +20,54 @@ def main() -> None:
     # A scene means the same whatever else is installed, and looking for plugins takes time.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
-        from atomsim.cli.remedies import with_remedies
-        from atomsim.cli.terminal.output import prepare, tell
-        from atomsim.errors import AtomsimError
-
-        prepare()
-    except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
-    try:
-        _run_command()
+        code = _exit_code()
     except KeyboardInterrupt:
         code = INTERRUPTED
+    sys.exit(code)
+
+
+def _exit_code() -> int:
+    """Do what was typed, until all that it printed has arrived."""
+    from atomsim.cli.terminal.output import deliver, prepare
+
+    prepare()
+    try:
+        code = _typed()
+    except OSError as error:
+        code = FAILED
+        _tell_of(error)
+    undelivered = deliver()
+    if undelivered is not None and code == 0:
+        code = FAILED
+        _tell_of(undelivered)
+        deliver()
+    return code
+
+
+def _typed() -> int:
+    """Do what was typed; return the exit code, having said what went wrong."""
+    from atomsim.cli.remedies import with_remedies
+    from atomsim.cli.terminal.output import tell
+    from atomsim.errors import AtomsimError
+
+    try:
+        from atomsim.cli.app import run_typed
+
+        return run_typed()
     except AtomsimError as error:
         tell(with_remedies(error))
-        code = error.exit_code
+        return error.exit_code
     except MemoryError as error:
         tell(str(error) or "not enough memory for this; fewer atoms, pairs or frames at a time need less")
-        code = 1
-    except BrokenPipeError:  # whoever read our output has seen enough
-        code = 1
-    except OSError as error:
+        return FAILED
+
+
+def _tell_of(error: OSError) -> None:
+    """Say what the system refused, unless whoever read our output has seen enough."""
+    from atomsim.cli.terminal.output import tell
+
+    if not isinstance(error, BrokenPipeError):
         tell(f"{error.filename or _nameless()}: {error.strerror or error}")
-        code = 1
-    _give_output_up()
-    sys.exit(code)
 
 
 def _nameless() -> str:
@@ -52,23 +77,3 @@ def _nameless() -> str:
     except OSError:
         return "the current folder"
     return "the output"
-
-
-def _run_command() -> None:
-    """Do what was typed, until all that it printed has arrived; ends in SystemExit or in an error."""
-    from atomsim.cli.app import app
-
-    try:
-        app()
-    finally:
-        if sys.stdout is not None:
-            sys.stdout.flush()
-
-
-def _give_output_up() -> None:
-    """Forget what cannot be printed, or Python would try again at the very end, in vain and loudly."""
-    try:
-        if sys.stdout is not None:
-            sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

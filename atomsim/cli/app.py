@@ -1,4 +1,4 @@
-"""The list of commands; knows none of what they do."""
+"""The list of commands, and how what was typed becomes one of them."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from atomsim.cli.commands.scenes import new, scenes
 from atomsim.cli.commands.schema import schema
 from atomsim.cli.commands.show import show
 from atomsim.cli.commands.verify import verify
+from atomsim.cli.voice import Command, UsageError, in_our_words
+from atomsim.errors import InputError
 from atomsim.shipped import shipped
 from atomsim.version import __version__
 
@@ -28,7 +30,7 @@ app = typer.Typer(
 )
 
 for command in (scenes, new, run, render, measure, check, show, compare, verify, recover, schema):
-    app.command()(command)
+    app.command(cls=Command)(command)
 app.add_typer(golden, name="golden")
 
 
@@ -56,3 +58,18 @@ def _top(
         raise typer.Exit
     if context.invoked_subcommand is None:
         print(BEGIN.format(version=__version__, docs=shipped("docs") / "tutorial.md"), end="")
+
+
+def run_typed() -> int:
+    """Do what was typed and return the exit code.
+
+    Raises:
+        AtomsimError: whatever went wrong, mistakes of typing included.
+    """
+    try:
+        code = app(prog_name="atomsim", standalone_mode=False)
+    except UsageError as error:
+        raise InputError(in_our_words(error)) from None
+    except SystemExit as end:  # a run that was stopped at once, or a script for completion
+        code = end.code
+    return code if isinstance(code, int) else 0

@@ -1,16 +1,99 @@
-"""Options that several commands share; knows no command."""
+"""Arguments and options that several commands share, and how their values are read: numbers, names of files."""
 
 from __future__ import annotations
 
-from typing import Annotated, TypeAlias
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, TypeAlias
 
 import typer
 
+from atomsim.errors import InputError
+
+
+def number(option: str, least: float) -> Callable[[str], float]:
+    """Return what reads the value of an option as a finite number, written as in a scene."""
+
+    def read(text: str) -> float:
+        value = _resolved(text)
+        if value is None or not (math.isfinite(value) and value >= least):
+            raise InputError(f"{option} needs a number of {least:g} or more{_meant(text)}")
+        return value
+
+    return read
+
+
+def whole_number(option: str, least: int) -> Callable[[str], int]:
+    """Return what reads the value of an option as a whole number, written as in a scene: 1e3 is one."""
+
+    def read(text: str) -> int:
+        value = _resolved(text)
+        if value is None or not (math.isfinite(value) and value == int(value) and value >= least):
+            raise InputError(f"{option} needs a whole number of {least} or more{_meant(text)}")
+        return int(value)
+
+    return read
+
+
+def _resolved(text: str) -> int | float | None:
+    """Return the number that a text means in a scene, or None."""
+    from atomsim.scene.yaml.scalars import resolve
+
+    value: Any = resolve(str(text).strip())  # typer sends defaults here, too
+    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def _meant(text: str) -> str:
+    """Return what was typed, and the number without commas if that was meant."""
+    from atomsim.scene.mistakes.wording import readable
+
+    plain = text.replace(",", "").replace("_", "")
+    hint = f"; write {plain}" if plain != text and _resolved(plain) is not None else ""
+    return f"{hint} (got {readable(text)})"
+
+
+def file_to_write(option: str) -> Callable[[str], Path]:
+    """Return what reads the value of an option as the name of a file, which no option and no stream is."""
+
+    def read(text: str) -> Path:
+        if text == "-":
+            raise InputError(f"{option} needs the name of a file; nothing is written to standard output (got -)")
+        if text.startswith("-"):
+            raise InputError(f"{option} needs the name of a file; one that begins so is written ./{text} (got {text})")
+        return Path(text)
+
+    return read
+
+
+def output(metavar: str, help: str) -> Any:
+    """Return the option that names the file to write."""
+    return typer.Option(
+        "--output", "-o", metavar=metavar, parser=file_to_write("--output"), show_default=False, help=help
+    )
+
+
+BACKENDS = ("auto", "numpy", "numba")
+
 Backend: TypeAlias = Annotated[
-    str, typer.Option(metavar="auto|numpy|numba", help="What computes; the trajectory is the same to the last bit.")
+    str,
+    typer.Option(
+        metavar="|".join(BACKENDS),
+        help="What computes; the trajectory is the same to the last bit.",
+        autocompletion=lambda: BACKENDS,
+    ),
 ]
 
 Threads: TypeAlias = Annotated[
     int | None,
-    typer.Option(metavar="N", help="Threads to compute with (Numba only); by default as many as are worth it."),
+    typer.Option(
+        metavar="N",
+        parser=whole_number("--threads", 1),
+        help="Threads to compute with (Numba only); by default as many as are worth it.",
+    ),
+]
+
+Settings: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scene; may be repeated."),
 ]

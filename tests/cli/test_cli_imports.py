@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from support.process import finish, python
 
 ROOT = Path(__file__).parents[2]
 RODS = str(ROOT / "scenes" / "rods.yaml")
@@ -28,7 +27,7 @@ open("modules.json", "w").write(json.dumps(sorted(set(module.split(".")[0] for m
 
 def loaded(folder: Path, *arguments: str) -> set[str]:
     """Run a command in a process of its own and return which of the libraries it loaded."""
-    subprocess.run([sys.executable, "-c", PROBE, "-", *arguments], cwd=folder, check=True, capture_output=True)
+    assert finish("-", *arguments, program=python(PROBE), cwd=folder).returncode == 0
     return LIBRARIES & set(json.loads((folder / "modules.json").read_text()))
 
 
@@ -48,22 +47,17 @@ def test_a_command_loads_what_it_needs(tmp_path, arguments, libraries):
     assert loaded(tmp_path, *arguments) <= libraries
 
 
-def test_plugins_of_others_do_not_read_scenes(tmp_path, monkeypatch):
+def test_plugins_of_others_do_not_read_scenes(tmp_path):
     """A package that is installed by chance could change what pydantic reads."""
     about = tmp_path / "site" / "meddler-1.dist-info"
     about.mkdir(parents=True)
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: meddler\nVersion: 1\n")
     (about / "entry_points.txt").write_text("[pydantic]\nmeddler = meddler:plugin\n")
     (about.parent / "meddler.py").write_text("raise SystemExit('a plugin was loaded')\n")
-    monkeypatch.setenv("PYTHONPATH", str(about.parent))
-    done = subprocess.run(
-        [sys.executable, "-m", "atomsim", "check", RODS], cwd=tmp_path, check=False, capture_output=True, text=True
-    )
+    done = finish("check", RODS, cwd=tmp_path, PYTHONPATH=str(about.parent))
     assert (done.returncode, done.stderr) == (0, "")
-    monkeypatch.setenv("PYDANTIC_DISABLE_PLUGINS", "")  # whoever wants them, has them
-    done = subprocess.run(
-        [sys.executable, "-m", "atomsim", "check", RODS], cwd=tmp_path, check=False, capture_output=True, text=True
-    )
+    wanted = {"PYDANTIC_DISABLE_PLUGINS": ""}  # whoever wants them, has them
+    done = finish("check", RODS, cwd=tmp_path, PYTHONPATH=str(about.parent), **wanted)
     assert "a plugin was loaded" in done.stderr
 
 
@@ -76,5 +70,4 @@ def test_only_pictures_load_matplotlib(tmp_path):
 
 def test_importing_the_package_loads_nothing():
     code = f"import sys, atomsim; print(sorted({LIBRARIES!r} & set(sys.modules)))"
-    printed = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
-    assert printed == "[]\n"
+    assert finish(program=python(code)).stdout == "[]\n"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support.process import COMMAND, finish
+from support.process import finish, python
 
 from atomsim.compiler import compile_scene
 from atomsim.core.simulate import simulate
@@ -22,9 +21,11 @@ RUN = ("run", SCENE, "--rounds", "20", "--backend", "numpy", "--force")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A folder with one trajectory in it."""
+    """A folder with two trajectories and a broken scene in it."""
     folder = tmp_path_factory.mktemp("output")
     assert finish(*RUN, cwd=folder).returncode == 0
+    assert finish(*RUN, "-o", "other.h5", "--set", "groups.left.velocity.0=2", cwd=folder).returncode == 0
+    (folder / "broken.yaml").write_text("atomsim: 1\n")
     return folder
 
 
@@ -42,20 +43,12 @@ def closing(*numbers: int):
 def test_closed_streams(folder, closed):
     """Files that are opened next must not take their numbers: HDF5 and Numba write to 2 when they feel like it."""
     whole = (folder / "out.h5").read_bytes()
-    done = subprocess.run([*COMMAND, *RUN], cwd=folder, preexec_fn=closing(*closed), check=False, timeout=60)
-    assert done.returncode == 0
+    assert finish(*RUN, cwd=folder, before=closing(*closed)).returncode == 0
     assert (folder / "out.h5").read_bytes() == whole
-    for arguments, code in ((("show", "out.h5"), 0), (("show", "no.h5"), 2), (("run", "--what"), 2)):
-        done = subprocess.run(
-            [*COMMAND, *arguments],
-            cwd=folder,
-            preexec_fn=closing(*closed),
-            check=False,
-            timeout=60,
-            **{name: subprocess.PIPE for number, name in ((1, "stdout"), (2, "stderr")) if number not in closed},
-        )
+    for arguments, code in WAYS_OUT:
+        done = finish(*arguments, cwd=folder, before=closing(*closed))
         assert done.returncode == code, arguments
-        assert b"Traceback" not in (done.stderr or b"")
+        assert "Traceback" not in done.stderr
 
 
 NOISE = """
@@ -76,39 +69,90 @@ main()
 def test_what_libraries_print_goes_into_no_file(folder):
     """They write to streams by number, whatever has been opened under it."""
     whole = (folder / "out.h5").read_bytes()
-    command = [sys.executable, "-c", NOISE, *RUN, "-o", "noise.h5"]
-    done = subprocess.run(command, cwd=folder, preexec_fn=closing(1, 2), check=False, timeout=60)
+    done = finish(*RUN, "-o", "noise.h5", program=python(NOISE), cwd=folder, before=closing(1, 2))
     assert done.returncode == 0
     assert (folder / "noise.h5").read_bytes() == whole
 
 
-@pytest.mark.parametrize(
-    "command", [("show", "out.h5"), ("check", SCENE), ("schema",), ("compare", "out.h5", "out.h5")]
-)
-def test_results_that_cannot_be_written(folder, command):
-    with Path("/dev/full").open("wb") as full:
-        done = subprocess.run(
-            [*COMMAND, *command], cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True, check=False
-        )
-    assert (done.returncode, done.stderr) == (1, "the output: No space left on device\n")
+@contextlib.contextmanager
+def full():
+    """A stream that takes nothing: a full disk."""
+    with Path("/dev/full").open("wb") as stream:
+        yield stream
 
 
-def test_messages_that_cannot_be_written(folder):
-    with Path("/dev/full").open("wb") as full:
-        for arguments, code in ((("show", "no.h5"), 2), (RUN, 0)):
-            done = subprocess.run([*COMMAND, *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=full, check=False)
-            assert done.returncode == code
-
-
-@pytest.mark.parametrize("command", [("show", "out.h5"), ("schema",)])
-def test_a_reader_that_has_seen_enough(folder, command):
+@contextlib.contextmanager
+def broken():
+    """A stream that nobody reads any more."""
     read, write = os.pipe()
     os.close(read)
-    done = subprocess.run(
-        [*COMMAND, *command], cwd=folder, stdout=write, stderr=subprocess.PIPE, text=True, check=False
-    )
+    yield write
     os.close(write)
+
+
+def typed(value):
+    """Name a test by what is typed."""
+    return " ".join(Path(part).name for part in value) if isinstance(value, tuple) else None
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("show", "out.h5"),
+        ("check", SCENE),
+        ("schema",),
+        ("compare", "out.h5", "out.h5"),
+        ("verify", "out.h5"),
+        ("scenes",),
+        ("--help",),
+        ("run", "--help"),
+        ("--version",),
+        (),
+    ],
+    ids=typed,
+)
+def test_results_that_cannot_be_written(folder, command):
+    with full() as stream:
+        done = finish(*command, cwd=folder, stdout=stream)
+    assert (done.returncode, done.stderr) == (1, "the output: No space left on device\n")
+    with broken() as stream:
+        done = finish(*command, cwd=folder, stdout=stream)
     assert (done.returncode, done.stderr) == (1, "")
+
+
+WAYS_OUT = [
+    (("show", "out.h5"), 0),
+    (("--version",), 0),
+    (("show", "no.h5"), 2),
+    (("check", "broken.yaml"), 2),
+    (("check", SCENE, "broken.yaml"), 2),
+    (("compare", "out.h5", "other.h5"), 1),
+    (("run",), 2),
+    (("run", "--what"), 2),
+    (("run", SCENE, "--rounds", "many"), 2),
+    (("rnu", "out.h5"), 2),
+    (("golden",), 2),
+    (("golden", "check", "no.yaml"), 2),
+    (RUN, 0),
+    ((*RUN, "--set", "time_step=0.1", "--rounds", "400", "-o", "blown.h5"), 3),
+]
+"""Commands and their exit codes, by every way that the program ends."""
+
+
+@pytest.mark.parametrize(("command", "code"), WAYS_OUT, ids=typed)
+def test_messages_that_cannot_be_written(folder, command, code):
+    """The exit code is that of the work, whether anybody hears of it or not, and however Python buffers."""
+    for stream, variables in ((full, {}), (full, {"PYTHONUNBUFFERED": "1"}), (broken, {})):
+        with stream() as nobody:
+            assert finish(*command, cwd=folder, stderr=nobody, **variables).returncode == code
+
+
+@pytest.mark.parametrize(("command", "code"), [way for way in WAYS_OUT if way[1]], ids=typed)
+def test_nothing_can_be_written(folder, command, code):
+    """Where the work has failed already, results that do not arrive make it no other failure."""
+    for stream in (full, broken):
+        with stream() as nobody:
+            assert finish(*command, cwd=folder, stdout=nobody, stderr=nobody).returncode == code
 
 
 @pytest.mark.parametrize(
@@ -132,16 +176,9 @@ def test_encodings_that_lack_our_letters(folder, variables):
 def test_a_terminal_that_lacks_our_letters_gets_escapes(folder):
     """On a terminal of another encoding UTF-8 would be gibberish."""
     leader, follower = os.openpty()
-    done = subprocess.run(
-        [*COMMAND, "show", "out.h5"],
-        cwd=folder,
-        env={**os.environ, "PYTHONIOENCODING": "ascii"},
-        stdout=follower,
-        stderr=subprocess.PIPE,
-        check=False,
-    )
+    done = finish("show", "out.h5", cwd=folder, stdout=follower, PYTHONIOENCODING="ascii")
     os.close(follower)
-    assert (done.returncode, done.stderr) == (0, b"")
+    assert (done.returncode, done.stderr) == (0, "")
     assert rb"\u03c4 = 0.01" in os.read(leader, 65536)
     os.close(leader)
 
@@ -169,14 +206,7 @@ def test_too_little_memory_is_one_line(folder):
         "from atomsim.cli import main; main()"
     )
     settings = ("--set", "groups.left.count=9000000", "--set", "bonds.left=null", "--set", "collisions=null")
-    done = subprocess.run(
-        [sys.executable, "-c", script, "check", SCENE, *settings],
-        cwd=folder,
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = finish("check", SCENE, *settings, program=python(script), cwd=folder, OPENBLAS_NUM_THREADS="1")
     assert done.returncode in (1, 2)
     assert "memory" in done.stderr or "allocate" in done.stderr
     assert done.stderr.count("\n") == 1

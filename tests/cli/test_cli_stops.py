@@ -1,16 +1,15 @@
-"""Ctrl-C and SIGTERM: what there is gets written, the exit code tells, and one line says how to go on."""
+"""Ctrl-C, SIGTERM and SIGHUP: what there is gets written, the exit code tells, and one line says how to go on."""
 
 from __future__ import annotations
 
 import re
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
-from support.process import finish, heed, start
+from support.process import finish, heed, python, start
 
 from atomsim.trajectory import Trajectory, journal_path
 
@@ -33,7 +32,7 @@ def started(cwd: Path, *more: str) -> subprocess.Popen[str]:
     return process
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_a_stopped_run_writes_what_there_is_and_says_how_to_go_on(tmp_path, number, code):
     process = started(tmp_path)
     process.send_signal(number)
@@ -70,14 +69,7 @@ main()
 
 def test_a_second_signal_does_not_wait(tmp_path):
     """The first one decides the exit code; the frames are in the journal."""
-    done = subprocess.run(
-        [sys.executable, "-c", SECOND_SIGNAL, *LONG_RUN],
-        cwd=tmp_path,
-        preexec_fn=heed,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = finish(*LONG_RUN, program=python(SECOND_SIGNAL), cwd=tmp_path, before=heed)
     assert done.returncode == 143
     assert done.stderr == "stopped at once; to go on: atomsim run --resume out.h5\n"
     with Trajectory(tmp_path / "out.h5") as trajectory:
@@ -91,14 +83,7 @@ READY = "import sys; from atomsim.cli import main; print('ready', flush=True); m
 def test_ctrl_c_at_any_moment_of_the_start_is_quiet(tmp_path):
     """From the first line of ours on: while modules are loaded, the scene is compiled, the run begins."""
     for moment in (0.02, 0.04, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4):
-        process = subprocess.Popen(
-            [sys.executable, "-c", READY, *LONG_RUN, "-o", f"{moment}.h5"],
-            cwd=tmp_path,
-            preexec_fn=heed,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        process = start(*LONG_RUN, "-o", f"{moment}.h5", program=python(READY), cwd=tmp_path)
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         time.sleep(moment)
@@ -108,17 +93,17 @@ def test_ctrl_c_at_any_moment_of_the_start_is_quiet(tmp_path):
         assert re.fullmatch(r"(stopped after round .*\n)?", err), (moment, err)
 
 
-def test_signals_that_are_ignored_stay_ignored(tmp_path):
-    """Behind `nohup`, or in the background of a script, Ctrl-C is not meant for this run."""
-    deaf = subprocess.Popen(
-        [sys.executable, "-c", READY, "run", SCENES / "rods.yaml", "-q", "--backend", "numpy"],
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
+def test_signals_that_are_ignored_stay_ignored(tmp_path, number):
+    """Behind `nohup`, or in the background of a script, neither Ctrl-C nor a closed terminal is meant for this run."""
+    deaf = start(
+        *("run", SCENES / "rods.yaml", "-q", "--backend", "numpy"),
+        program=python(READY),
         cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
+        before=lambda: signal.signal(number, signal.SIG_IGN),
     )
     wait_for((tmp_path / "out.h5.part").exists)
-    deaf.send_signal(signal.SIGINT)
+    deaf.send_signal(number)
     deaf.communicate()
     assert deaf.returncode == 0
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from support.process import finish, python
 
 TRACED = """
 import json, os, sys, tempfile
@@ -117,9 +116,8 @@ TRICKS = {
 def traced(folder: Path, act: str) -> tuple[int, list[list[str]]]:
     """Do something in a process that has done all of it before; return the exit code and what was touched."""
     constants = f"GOOD, BASE, ACT = {GOOD!r}, {BASE!r}, {act!r}\n"
-    done = subprocess.run(
-        [sys.executable, "-c", constants + TRACED], cwd=folder, capture_output=True, text=True, check=True, timeout=60
-    )
+    done = finish(program=python(constants + TRACED), cwd=folder)
+    assert done.returncode == 0, done
     code, seen = json.loads(done.stdout)
     return code, [event for event in seen if event[1] not in HARMLESS]
 

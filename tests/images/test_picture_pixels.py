@@ -1,14 +1,13 @@
 """The pixels of one picture: sizes, places, colours and the very bytes."""
 
 import colorsys
-import os
-import subprocess
 import sys
 import textwrap
 
 import numpy as np
 import pytest
 from numpy._core._multiarray_umath import __cpu_dispatch__
+from support.process import finish
 
 from atomsim.drawing.camera import Camera, View
 from atomsim.drawing.picture import draw
@@ -154,11 +153,5 @@ GOLDEN = "86422a680f94dd6a9a58e5ab333c201c387d879d73e2ab012383f3b5c8af6342"
     ],
 )
 def test_the_bytes_are_the_same_for_any_threads_and_any_processor(environment):
-    run = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", DIGEST],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert run.stdout.strip() == GOLDEN
+    run = finish(program=(sys.executable, "-W", "ignore", "-c", DIGEST), **environment)
+    assert (run.stdout.strip(), run.stderr) == (GOLDEN, "")

@@ -3,14 +3,13 @@
 import base64
 import io
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 from PIL import Image
+from support.process import finish, python
 
 from atomsim.core.model import Frame, Observables, State
 from atomsim.drawing.camera import View
@@ -199,5 +198,4 @@ def test_frames_do_not_go_into_a_file(tmp_path):
 
 def test_matplotlib_waits_until_it_is_needed():
     code = "import sys, atomsim.drawing; print({'matplotlib', 'PIL', 'h5py'} & set(sys.modules))"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout == "set()\n"
+    assert finish(program=python(code)).stdout == "set()\n"

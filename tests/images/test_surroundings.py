@@ -1,7 +1,6 @@
 """A strip has the same bytes in whatever surroundings matplotlib is met, and leaves these as they were."""
 
 import os
-import subprocess
 import sys
 import threading
 import warnings
@@ -10,6 +9,7 @@ from pathlib import Path
 import matplotlib as mpl
 import pytest
 from support import small_strip as program
+from support.process import finish
 from support.small_strip import EXTENSIONS, small_strip
 
 LOUD = """
@@ -35,15 +35,7 @@ def expected(tmp_path_factory) -> list[bytes]:
 
 def draw(cwd: Path, **variables: str) -> None:
     """Draw in a process of its own, which has to be silent."""
-    done = subprocess.run(
-        [sys.executable, program.__file__, cwd],
-        cwd=cwd,
-        env={name: value for name, value in os.environ.items() if not name.startswith("MPL")} | variables,
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
-    )
+    done = finish(cwd, program=(sys.executable, program.__file__), cwd=cwd, **variables)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 

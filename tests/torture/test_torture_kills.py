@@ -5,11 +5,11 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from support.process import finish
 
 IS_LONG = os.environ.get("ATOMSIM_LONG") == "1"
 N_KILLS = 500 if IS_LONG else 14
@@ -20,11 +20,8 @@ HAS_NUMBA = importlib.util.find_spec("numba") is not None
 @pytest.mark.timeout(3600)
 def test_a_run_killed_many_times_becomes_the_uninterrupted_one() -> None:
     backends = ["numpy", "numba"] if IS_LONG and HAS_NUMBA else ["numpy"]
-    done = subprocess.run(
-        [sys.executable, Path(__file__).with_name("shooting.py"), str(N_KILLS), "1", *backends],
-        capture_output=True,
-        text=True,
-        check=False,
+    done = finish(
+        str(N_KILLS), "1", *backends, program=(sys.executable, Path(__file__).with_name("shooting.py")), timeout=3600
     )
     assert done.returncode == 0, done.stderr
     counts = json.loads(done.stdout)

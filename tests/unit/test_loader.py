@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import jsonschema
 import pytest
+from support.process import finish, python
 
 from atomsim.errors import Mark, SceneError
 from atomsim.scene.loader import MAX_PROBLEMS, load, loads
@@ -97,8 +96,7 @@ def test_a_null_is_not_there() -> None:
 
 def test_a_scene_can_be_piped() -> None:
     code = "from atomsim.scene.loader import load; print(load('/dev/stdin').scene.rounds)"
-    done = subprocess.run([sys.executable, "-c", code], input=GOOD, capture_output=True, text=True, check=True)
-    assert done.stdout == "100\n"
+    assert finish(program=python(code), said=GOOD).stdout == "100\n"
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from support.process import finish, python
 
 import atomsim
 from atomsim.core.numba_backend import cache
@@ -57,12 +55,7 @@ def test_where_nothing_can_be_written_nothing_is_kept(monkeypatch: pytest.Monkey
 def test_a_second_process_loads_what_the_first_compiled(tmp_path: Path) -> None:
     pytest.importorskip("numba", reason="the backend is an extra")
     package = Path(atomsim.__file__).parents[1]
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(package)}
-    outputs = [
-        subprocess.run(
-            [sys.executable, "-c", START], env=environment, capture_output=True, text=True, check=True
-        ).stdout.split()
-        for _ in range(2)
-    ]
+    variables = {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(package)}
+    outputs = [finish(program=python(START), **variables).stdout.split() for _ in range(2)]
     assert outputs == [["0", "1"], ["1", "0"]]
     assert not list(Path(cache.__file__).parent.rglob("*.nbc"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 import tarfile
 import tomllib
@@ -12,7 +11,7 @@ from email import message_from_bytes
 from pathlib import Path
 
 import pytest
-from support.process import COMMAND
+from support.process import finish
 
 ROOT = Path(__file__).parents[2]
 LOCKS = ("run", "dev", "lowest")
@@ -22,9 +21,8 @@ LOCKS = ("run", "dev", "lowest")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with the wheel and the source archive of this checkout."""
     folder = tmp_path_factory.mktemp("dist")
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-d", folder], cwd=ROOT, check=True, capture_output=True
-    )
+    done = finish("build", "-d", folder, program=(sys.executable, "-m", "hatchling"), cwd=ROOT)
+    assert done.returncode == 0, done
     return folder
 
 
@@ -36,14 +34,7 @@ def test_the_wheel_works_where_nothing_lies_beside_it(built: Path, tmp_path: Pat
     work.mkdir()
 
     def atomsim(*arguments: str) -> str:
-        done = subprocess.run(
-            [*COMMAND, *arguments],
-            cwd=work,
-            env={"PYTHONPATH": str(installed), "HOME": str(tmp_path)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = finish(*arguments, cwd=work, PYTHONPATH=str(installed), HOME=str(tmp_path))
         assert (done.returncode, done.stderr) == (0, ""), done
         return done.stdout
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import re
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Annotated, Any, Literal
 import jsonschema
 import pytest
 from pydantic import Field, create_model
+from support.process import finish
 
 from atomsim.errors import Mark, SceneError
 from atomsim.scene import language
@@ -86,8 +86,7 @@ def test_no_names_are_too_few_but_a_change_may_have_none(validator: jsonschema.D
 def test_the_schema_does_not_depend_on_optimisation(flag: str) -> None:
     """Docstrings, which tell what declarations are, are gone from the classes then."""
     code = "import sys; from atomsim.scene.schema import schema_text; sys.stdout.buffer.write(schema_text().encode())"
-    done = subprocess.run([sys.executable, flag, "-c", code], capture_output=True, check=True)
-    assert done.stdout.decode() == schema_text()
+    assert finish(program=(sys.executable, flag, "-c", code)).stdout == schema_text()
 
 
 def test_pydantic_has_no_say_in_the_schema(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,24 +8,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atomsim.cli.options import Settings
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import explained
 
 if TYPE_CHECKING:
     from atomsim.findings.finding import Finding
 
 
-def check(
-    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files.")],
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scenes; may be repeated."),
-    ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print what was found as a list in JSON, and nothing else.")
-    ] = False,
-) -> None:
-    """Find the mistakes of scenes, or describe what they would run and say what they are probably missing.
+@explained(
+    """
+    Find the mistakes of scenes, or describe what they would run and say what they are probably missing.
 
     Every mistake is one line `file:line:column: path: message`; exit code 2 if there is any. What is found in a scene
     without mistakes is a warning, nearly always a fault, or a note, which may be meant; docs/findings.md explains each.
@@ -34,7 +28,14 @@ def check(
 
     atomsim check scenes/*.yaml
     """
-
+)
+def check(
+    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files.")],
+    settings: Settings = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print what was found as a list in JSON, and nothing else.")
+    ] = False,
+) -> None:
     from atomsim.cli.describe import describe_findings, describe_model
     from atomsim.compiler import compile_scene
     from atomsim.errors import SceneError

@@ -7,18 +7,15 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.options import number
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import explained
 
 
-def compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="A trajectory.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another trajectory of the same atoms.")],
-    tolerance: Annotated[
-        float, typer.Option(metavar="DIFFERENCE", min=0.0, help="How far numbers may be apart; 0 compares bits.")
-    ] = 0.0,
-) -> None:
-    """Say whether two trajectories are identical.
+@explained(
+    """
+    Say whether two trajectories are identical.
 
     If they are not, say where and by how much they first differ; exit code 1.
 
@@ -26,6 +23,19 @@ def compare(
 
     atomsim compare a.h5 b.h5 --tolerance 1e-9
     """
+)
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="A trajectory.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another trajectory of the same atoms.")],
+    tolerance: Annotated[
+        float,
+        typer.Option(
+            metavar="DIFFERENCE",
+            parser=number("--tolerance", 0.0),
+            help="How far numbers may be apart; 0 compares bits.",
+        ),
+    ] = 0.0,
+) -> None:
     from atomsim.tasks.compare import first_difference
     from atomsim.trajectory import Trajectory
 

@@ -11,6 +11,7 @@ import typer
 from atomsim.cli.options import Backend, Threads
 from atomsim.cli.remedies import command
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import Command, explained
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,18 +26,21 @@ Folder = Annotated[Path, typer.Option("--into", metavar="FOLDER", help="The fold
 DEFAULT_FOLDER = Path("tests/golden")
 
 
-@golden.command()
-def record(
-    scenes: Scenes,
-    into: Folder = DEFAULT_FOLDER,
-    reason: Annotated[str, typer.Option(metavar="WHY", help="Why the goldens change; goes into the log.")] = "",
-) -> None:
-    """Record what scenes give now. A golden that exists is replaced only for a reason, which is logged.
+@golden.command(cls=Command)
+@explained(
+    """
+    Record what scenes give now. A golden that exists is replaced only for a reason, which is logged.
 
     Example:
 
     atomsim golden record scenes/rods.yaml --into tests/golden --reason "new law"
     """
+)
+def record(
+    scenes: Scenes,
+    into: Folder = DEFAULT_FOLDER,
+    reason: Annotated[str, typer.Option(metavar="WHY", help="Why the goldens change; goes into the log.")] = "",
+) -> None:
     from atomsim.errors import InputError, RunError
     from atomsim.tasks.golden import LOG, golden_path, record_golden, write_golden
 
@@ -64,9 +68,10 @@ def record(
         raise RunError(f"{into}: cannot be written: {error.strerror}") from None
 
 
-@golden.command()
-def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "auto", threads: Threads = None) -> None:
-    """Run scenes and compare them with their goldens, bit for bit. A missing golden is a failure.
+@golden.command(cls=Command)
+@explained(
+    """
+    Run scenes and compare them with their goldens, bit for bit. A missing golden is a failure.
 
     Exit code 1 if any differs.
 
@@ -74,6 +79,8 @@ def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "aut
 
     atomsim golden check scenes/rods.yaml --into tests/golden
     """
+)
+def check(scenes: Scenes, into: Folder = DEFAULT_FOLDER, backend: Backend = "auto", threads: Threads = None) -> None:
     from atomsim.tasks.golden import check_golden, golden_path, read_golden
 
     _require_folder(into)

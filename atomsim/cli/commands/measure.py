@@ -10,6 +10,7 @@ import typer
 
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import explained
 from atomsim.errors import InputError, Remedy
 
 if TYPE_CHECKING:
@@ -19,6 +20,17 @@ NARROWEST = 12
 """Letters that a printed number takes at least."""
 
 
+@explained(
+    """
+    Measure a run: print or write numbers over its frames.
+
+    docs/measures.md defines all measures.
+
+    Example:
+
+    atomsim measure out.h5 "height of ring" "gap between ring and surface" -o heights.csv
+    """
+)
 def measure(
     trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
     measures: Annotated[
@@ -37,14 +49,6 @@ def measure(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is no table of atomsim's.")] = False,
 ) -> None:
-    """Measure a run: print or write numbers over its frames.
-
-    docs/measures.md defines all measures.
-
-    Example:
-
-    atomsim measure out.h5 "height of ring" "gap between ring and surface" -o heights.csv
-    """
     from atomsim.cli.commands.render import _rounds
     from atomsim.measures.series import columns_of
     from atomsim.measures.series import rows as measured_rows

@@ -8,17 +8,21 @@ from typing import Annotated
 import typer
 
 from atomsim.cli.terminal.output import say
+from atomsim.cli.voice import explained
 
 
-def recover(
-    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="The trajectory whose journal is left.")],
-) -> None:
-    """Build the HDF5 file from the journal of a killed run.
+@explained(
+    """
+    Build the HDF5 file from the journal of a killed run.
 
     Example:
 
     atomsim recover out.h5
     """
+)
+def recover(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="The trajectory whose journal is left.")],
+) -> None:
     from atomsim.trajectory import Trajectory
     from atomsim.trajectory import recover as rebuild
 

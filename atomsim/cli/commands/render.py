@@ -7,24 +7,31 @@ from typing import Annotated, TypeVar
 
 import typer
 
+from atomsim.cli.options import file_to_write, output
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import explained
 from atomsim.errors import InputError, Notice, Remedy
 
 Part = TypeVar("Part", int, float)
 
+Output = Annotated[
+    Path | None, output("PICTURE", "The picture to write: png, jpg, webp, pdf or svg.  [default: OUT with .png]")
+]
 
+
+@explained(
+    """
+    Draw a strip: frames side by side, a row per trajectory.
+
+    Example:
+
+    atomsim render rods.h5 rod-thread.h5 threads.h5 -o figure1.png
+    """
+)
 def render(
     trajectories: Annotated[list[Path], typer.Argument(metavar="OUT", help="Trajectories, one row each.")],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="PICTURE",
-            help="The picture to write: png, jpg, webp, pdf or svg.  [default: OUT with .png]",
-        ),
-    ] = None,
+    output: Output = None,
     rounds: Annotated[
         str | None, typer.Option(metavar="0,250,...", help="The rounds to show, instead of what the scene says.")
     ] = None,
@@ -34,19 +41,19 @@ def render(
     size: Annotated[str | None, typer.Option(metavar="WxH", help="Size of one frame [pixels].")] = None,
     frames: Annotated[
         Path | None,
-        typer.Option(metavar="FOLDER", help="Write one PNG per frame into this folder, and no strip."),
+        typer.Option(
+            metavar="FOLDER",
+            parser=file_to_write("--frames"),
+            help="Write one PNG per frame into this folder, and no strip.",
+        ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that atomsim did not draw.")] = False,
 ) -> None:
-    """Draw a strip: frames side by side, a row per trajectory.
-
-    Example:
-
-    atomsim render rods.h5 rod-thread.h5 threads.h5 -o figure1.png
-    """
     from atomsim.drawing.files import is_our_picture
     from atomsim.tasks import render as pictures
 
+    if frames is not None and output is not None:
+        raise InputError("--frames writes pictures into its folder, and no strip; -o does not go with it")
     wanted = None if rounds is None else _rounds(rounds)
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")

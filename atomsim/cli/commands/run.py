@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atomsim.cli.options import Backend, Threads
+from atomsim.cli.options import Backend, Settings, Threads, output, whole_number
 from atomsim.cli.remedies import command, in_words
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import explained
 from atomsim.errors import InputError, Remedy
 
 if TYPE_CHECKING:
@@ -18,21 +19,35 @@ if TYPE_CHECKING:
 
 DEFAULT_OUTPUT = Path("out.h5")
 
+Output = Annotated[Path | None, output("OUT", f"The trajectory to write.  [default: {DEFAULT_OUTPUT}]")]
+Rounds = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        parser=whole_number("--rounds", 1),
+        help="Iteration rounds to run, instead of what the scene says.",
+    ),
+]
 
+
+@explained(
+    """
+    Simulate a scene and record its trajectory.
+
+    Examples:
+
+    atomsim run scenes/rods.yaml -o rods.h5 --set time_step=0.005
+
+    atomsim run --resume rods.h5 --rounds 8000
+    """
+)
 def run(
     scene: Annotated[
         Path | None, typer.Argument(metavar="SCENE", help="The scene, a YAML file.", show_default=False)
     ] = None,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="OUT", help="The trajectory to write.")
-    ] = DEFAULT_OUTPUT,
-    rounds: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Iteration rounds to run, instead of what the scene says.")
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="PATH=VALUE", help="Change a value of the scene; may be repeated."),
-    ] = None,
+    output: Output = None,
+    rounds: Rounds = None,
+    settings: Settings = None,
     backend: Backend = "auto",
     threads: Threads = None,
     compress: Annotated[bool, typer.Option("--compress", help="Write a smaller file, slowly.")] = False,
@@ -43,20 +58,12 @@ def run(
     force: Annotated[bool, typer.Option("--force", help="Replace the trajectory if it exists.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Simulate a scene and record its trajectory.
-
-    Examples:
-
-    atomsim run scenes/rods.yaml -o rods.h5 --set time_step=0.005
-
-    atomsim run --resume rods.h5 --rounds 8000
-    """
     from atomsim.cli.terminal.progress import Progress
     from atomsim.cli.terminal.signals import wishes_to_stop
     from atomsim.scene import load
     from atomsim.tasks import run as record
 
-    if resume is not None and (output != DEFAULT_OUTPUT or force or compress):
+    if resume is not None and (output is not None or force or compress):
         raise InputError("--resume goes on with the file that it names; -o, --force and --compress do not go with it")
     if scene is None and resume is not None and settings:
         raise InputError("--resume goes on with the scene inside the trajectory, which --set cannot change")
@@ -64,7 +71,8 @@ def run(
         raise InputError("name a scene to run, as in: atomsim run scenes/rods.yaml")
     started = time.monotonic()
     loaded = None if scene is None else load(scene, settings or ())
-    with wishes_to_stop(_to_go_on(resume or output)) as wish, Progress(is_shown=False if quiet else None) as progress:
+    target = resume or output or DEFAULT_OUTPUT
+    with wishes_to_stop(_to_go_on(target)) as wish, Progress(is_shown=False if quiet else None) as progress:
 
         def report(round_index: int, last_round: int) -> None:
             progress.report(round_index, last_round)
@@ -73,7 +81,7 @@ def run(
 
         if resume is not None:
             outcome = record.resume(
-                resume,
+                target,
                 rounds=rounds,
                 scene=loaded,
                 backend=backend,
@@ -84,7 +92,7 @@ def run(
         elif loaded is not None:
             outcome = record.run(
                 loaded,
-                output,
+                target,
                 rounds=rounds,
                 replace=force,
                 compress=compress,

@@ -7,19 +7,24 @@ from typing import Annotated
 
 import typer
 
+from atomsim.cli.options import output
 from atomsim.cli.remedies import command
 from atomsim.cli.terminal.output import say
+from atomsim.cli.voice import explained
 
 HEADINGS = {"paper": "Scenes of the paper", "recipe": "Recipes"}
 
 
-def scenes() -> None:
-    """List the scenes that come with atomsim.
+@explained(
+    """
+    List the scenes that come with atomsim.
 
     Example:
 
     atomsim scenes
     """
+)
+def scenes() -> None:
     from atomsim.tasks.offered import offers
 
     found = offers()
@@ -31,14 +36,9 @@ def scenes() -> None:
     say("a copy to change: atomsim new NAME")
 
 
-def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="One of those that `atomsim scenes` lists.")],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="SCENE", help="The file to write.", show_default=False)
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
-) -> None:
-    """Copy a scene that comes with atomsim, to begin with.
+@explained(
+    """
+    Copy a scene that comes with atomsim, to begin with.
 
     What it extends is copied beside it. By default the copy is called as the scene is, in the current folder.
 
@@ -46,6 +46,12 @@ def new(
 
     atomsim new rods
     """
+)
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="One of those that `atomsim scenes` lists.")],
+    output: Annotated[Path | None, output("SCENE", "The file to write.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+) -> None:
     from atomsim.tasks.offered import begin
 
     written = begin(name, output, replace=force)

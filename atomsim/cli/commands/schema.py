@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from atomsim.cli.voice import explained
 
-def schema() -> None:
-    """Print the JSON Schema of the scene language.
+
+@explained(
+    """
+    Print the JSON Schema of the scene language.
 
     Editors complete and check scenes with it.
 
@@ -12,6 +15,8 @@ def schema() -> None:
 
     atomsim schema > scene.schema.json
     """
+)
+def schema() -> None:
     from atomsim.scene.schema import schema_text
 
     print(schema_text(), end="")

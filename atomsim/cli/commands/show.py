@@ -8,23 +8,27 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from atomsim.cli.terminal.output import say
+from atomsim.cli.voice import explained
 
 if TYPE_CHECKING:
     from atomsim.trajectory import Trajectory
 
 
+@explained(
+    """
+    Say what is in a trajectory, or print the scene that made it.
+
+    Example:
+
+    atomsim show out.h5 --scene > again.yaml
+    """
+)
 def show(
     trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
     scene: Annotated[
         bool, typer.Option("--scene", help="Print the scene that made it, to be run again, and nothing else.")
     ] = False,
 ) -> None:
-    """Say what is in a trajectory, or print the scene that made it.
-
-    Example:
-
-    atomsim show out.h5 --scene > again.yaml
-    """
     from atomsim import Trajectory
     from atomsim.cli.describe import describe_trajectory
 

@@ -10,14 +10,12 @@ import typer
 from atomsim.cli.options import Backend, Threads
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
+from atomsim.cli.voice import explained
 
 
-def verify(
-    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
-    backend: Backend = "auto",
-    threads: Threads = None,
-) -> None:
-    """Compute a trajectory again and compare, bit for bit.
+@explained(
+    """
+    Compute a trajectory again and compare, bit for bit.
 
     It is computed from the scene inside it; positions and velocities are compared. Exit code 1 if it differs.
 
@@ -25,6 +23,12 @@ def verify(
 
     atomsim verify out.h5
     """
+)
+def verify(
+    trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="A trajectory.")],
+    backend: Backend = "auto",
+    threads: Threads = None,
+) -> None:
     from atomsim.core.backend import choose
     from atomsim.core.simulate import simulate
     from atomsim.tasks.compare import first_difference

@@ -7,6 +7,7 @@ import io
 import os
 import re
 import sys
+from typing import TextIO
 
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 """Characters by which a text could command the terminal; line breaks and tabs only lay it out."""
@@ -27,6 +28,29 @@ def prepare() -> None:
         if isinstance(stream, io.TextIOWrapper):
             encoding = stream.encoding if stream.isatty() else "utf-8"
             stream.reconfigure(encoding=encoding, errors="backslashreplace")
+
+
+def deliver() -> OSError | None:
+    """Send off what still waits to be printed; what cannot arrive is given up, or Python would try again, and loudly.
+
+    Returns:
+        What kept results from arriving, or None. Messages that nobody hears change nothing.
+    """
+    _deliver(sys.stderr)
+    return _deliver(sys.stdout)
+
+
+def _deliver(stream: TextIO | None) -> OSError | None:
+    """Send off what waits in one stream."""
+    if stream is None:
+        return None
+    try:
+        stream.flush()
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        return error
+    return None
 
 
 def say(text: str) -> None:

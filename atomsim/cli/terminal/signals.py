@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM as a wish that a run looks at when it can stop cleanly; knows nothing of runs."""
+"""Signals as a wish to stop, which a run looks at when it can stop cleanly."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from types import FrameType
 
 from atomsim.cli.terminal.output import tell
+
+WISHES = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""Ctrl-C, `kill`, a terminal that was closed."""
 
 
 class StopWish:
@@ -29,22 +32,25 @@ class StopWish:
         return self.signal_number is not None
 
     def note(self, signal_number: int, _: FrameType | None) -> None:
-        """Remember the first wish; a second Ctrl-C does not wait any longer."""
-        is_first = self.signal_number is None
+        """Remember the first wish; a second Ctrl-C does not wait any longer.
+
+        A terminal that is closed may say so twice, itself and by its shell, and is not impatient.
+        """
+        is_patient = self.signal_number is None or signal_number == signal.SIGHUP
         self.signal_number = self.signal_number or signal_number
-        if not (is_first and self.is_heard):
+        if not (is_patient and self.is_heard):
             raise KeyboardInterrupt
 
 
 @contextmanager
 def wishes_to_stop(hint: str) -> Iterator[StopWish]:
-    """Turn Ctrl-C and SIGTERM into a wish for as long as this lasts, unless they are ignored, as behind `nohup`.
+    """Turn signals into a wish for as long as this lasts, unless they are ignored, as behind `nohup`.
 
     Args:
         hint: what to tell those who would not wait for the wish to be granted.
     """
     wish = StopWish()
-    heeded = [number for number in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(number) != signal.SIG_IGN]
+    heeded = [number for number in WISHES if signal.getsignal(number) != signal.SIG_IGN]
     before = {number: signal.signal(number, wish.note) for number in heeded}
     try:
         yield wish

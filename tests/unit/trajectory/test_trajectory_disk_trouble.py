@@ -6,14 +6,13 @@ import errno
 import fcntl
 import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from sample_run import digest_of, frame, go_on, header, holds, killed, record
+from support.process import finish, python
 
 from atomsim.errors import AtomsimError, InputError, Remedy, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
@@ -237,13 +236,7 @@ def test_a_journal_that_goes_away_before_it_is_locked(
 def test_a_real_limit_on_the_size_of_files(tmp_path: Path, limit: int) -> None:
     """HDF5 survives what the operating system really does when a file may not grow."""
     path = tmp_path / "out.h5"
-    done = subprocess.run(
-        [sys.executable, "-c", LIMITED, path, str(limit)],
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = finish(path, str(limit), program=python(LIMITED), PYTHONPATH=str(Path(__file__).parent))
     assert done.returncode == 1
     assert "File too large" in done.stderr
     assert done.stderr.count("\n") == 1

@@ -5,11 +5,10 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 from sample_run import digest_of, go_on, header, holds, record
+from support.process import finish, python
 
 from atomsim.trajectory import Recorder, Trajectory, journal_path, recover
 from atomsim.trajectory.journal.read import Journal
@@ -65,12 +64,9 @@ print(json.dumps(counts))
 def test_a_killed_writer_loses_nothing(tmp_path: Path) -> None:
     """A process forks writers and kills each at a random moment of its life, building included."""
     whole = record(tmp_path / "whole.h5", header(400))
-    shooting = subprocess.run(
-        [sys.executable, "-c", SHOOTING, tmp_path, str(N_KILLS)],
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parent), "OPENBLAS_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
+    path = str(Path(__file__).parent)
+    shooting = finish(
+        tmp_path, str(N_KILLS), program=python(SHOOTING), timeout=1800, PYTHONPATH=path, OPENBLAS_NUM_THREADS="1"
     )
     n_written = json.loads(shooting.stdout)
     assert len(n_written) == N_KILLS

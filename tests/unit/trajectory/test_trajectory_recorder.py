@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sample_run import digest_of, frame, go_on, header, holds, is_same_state, killed, record
+from support.process import finish, python
 
 from atomsim.errors import InputError, Remedy, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
@@ -243,9 +242,9 @@ def test_any_number_of_stops_and_extensions_gives_the_same_bytes(
     """Each stop is a total of rounds, and whether the run was finished there or killed."""
     path = tmp_path_factory.mktemp("stops") / "out.h5"
     is_begun = False
-    for rounds, finish in [*sorted(stops.items()), (40, True)]:
+    for rounds, is_ended in [*sorted(stops.items()), (40, True)]:
         with Recorder.resume(path, rounds=rounds) if is_begun else Recorder(path, header(rounds)) as recording:
-            go_on(recording, finish=finish)
+            go_on(recording, finish=is_ended)
         is_begun = True
     assert digest_of(path) == digest_of(uninterrupted)
 
@@ -349,4 +348,4 @@ def test_recovering_needs_a_journal(uninterrupted: Path) -> None:
 
 def test_a_run_imports_hdf5_only_at_its_end() -> None:
     code = "import sys, atomsim.trajectory; sys.exit('h5py' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+    assert finish(program=python(code)).returncode == 0
