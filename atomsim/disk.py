@@ -172,6 +172,16 @@ def _inherit_access(temporary: Path, path: Path) -> None:
         temporary.chmod(mode)
 
 
+def check_regular(path: Path) -> None:
+    """Refuse what is there and no file that could be replaced: a pipe, a device.
+
+    Raises:
+        InputError: as said.
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise InputError(f"{path}: is not a regular file")
+
+
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
     """Open a file to be written, or the one behind a link, so that its name never stands for half of it.
@@ -179,10 +189,12 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     It is written under another name first, and moved into place when all went well.
 
     Raises:
+        InputError: a pipe or a device has that name.
         RunError: the disk does not take it; what stood under the name before is untouched.
     """
     try:
         target = behind(path)
+        check_regular(path)
         if is_protected(target):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         temporary = beside(target, f".{os.getpid()}.tmp")

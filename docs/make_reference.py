@@ -78,6 +78,10 @@ first makes sure that the two are the same: they may differ in `title`, `descrip
 `silence`; if anything else differs, nothing is run. It is the scene inside that goes on; `--rounds` says up to which
 round.
 """,
+    "atomsim golden record": """\
+A golden holds the digest of every recorded round and a few frames in full. It is a small text file, to be committed
+beside the scene; `LOG.md` in the same folder keeps the reasons.
+""",
     "atomsim check": """\
 The word after a number of bonds says how they are computed. All three ways give the same bits; they differ in speed.
 

@@ -15,8 +15,13 @@ def command(words: str, path: Path) -> str:
     >>> command("render", Path("my run.h5")), command("render", Path("-x.h5"))
     ("atomsim render 'my run.h5'", 'atomsim render ./-x.h5')
     """
+    return f"atomsim {words} {typed(path)}"
+
+
+def typed(path: Path) -> str:
+    """Return a name as it is typed into a shell."""
     name = str(path)
-    return f"atomsim {words} {shlex.quote(f'./{name}' if name.startswith('-') else name)}"
+    return shlex.quote(f"./{name}" if name.startswith("-") else name)
 
 
 def with_remedies(facts: AtomsimError | Notice) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from atomsim.disk import behind
+from atomsim.disk import behind, check_regular
 from atomsim.errors import InputError
 
 MARK = "drawn by atomsim"
@@ -27,7 +27,7 @@ def check_picture(path: Path, extensions: tuple[str, ...]) -> None:
         extensions: those allowed, with their dots; upper case is as good.
 
     Raises:
-        InputError: another extension, a folder, or a folder that does not exist.
+        InputError: another extension, a folder, a pipe, or a folder that does not exist.
     """
     if path.suffix.lower() not in extensions:
         allowed = ", ".join(extensions[:-1]) + f" or {extensions[-1]}"
@@ -35,6 +35,7 @@ def check_picture(path: Path, extensions: tuple[str, ...]) -> None:
         raise InputError(f"{path}: the extension tells the format; use {allowed} (got {given})")
     if path.is_dir():
         raise InputError(f"{path}: this is a folder; give the name of a file")
+    check_regular(path)
     folder = behind(path).parent
     if not folder.is_dir():
         raise InputError(f"{path}: the folder {folder} does not exist")

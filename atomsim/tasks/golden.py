@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from atomsim.core.model import Floats, Frame, GroupSpan, State
-from atomsim.disk import write_whole
+from atomsim.disk import check_regular, write_whole
 from atomsim.errors import InputError, Remedy
 from atomsim.tasks.compare import Difference, frame_difference
 
@@ -26,6 +26,10 @@ LAYOUT = 1
 
 LOG = "LOG.md"
 """The file beside the goldens that says why each was recorded."""
+
+
+FOLDER = "golden"
+"""The folder beside a scene in which its golden lies, unless another is named."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,9 +45,9 @@ class Golden:
     frames: dict[int, Floats]
 
 
-def golden_path(scene: Path, folder: Path) -> Path:
-    """Return where the golden of a scene lies."""
-    return folder / f"{scene.stem}.golden.json"
+def golden_path(scene: Path, folder: Path | None) -> Path:
+    """Return where the golden of a scene lies: in a folder, by default in `golden` beside the scene."""
+    return (scene.parent / FOLDER if folder is None else folder) / f"{scene.stem}.golden.json"
 
 
 def record_golden(frames: Iterable[Frame]) -> Golden:
@@ -124,6 +128,7 @@ def read_golden(path: Path) -> Golden:
     Raises:
         InputError: it is no golden.
     """
+    check_regular(path)
     try:
         document: dict[str, Any] = json.loads(path.read_text())
         if document["golden"] != LAYOUT:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 import re
 import shutil
 import sys
@@ -73,6 +74,39 @@ def test_a_missing_golden_is_a_failure(cli, tmp_path):
     code, out, _ = cli("golden", "check", ROOT / "scenes" / "threads.yaml", "--into", tmp_path)
     assert code == 1
     assert "there is no golden" in out
+
+
+@pytest.mark.parametrize("action", ["record", "check"])
+def test_a_missing_scene_is_no_missing_golden(cli, tmp_path, action):
+    """Nor is any other scene computed before it is told."""
+    code, out, err = cli("golden", action, ROOT / "scenes" / "rods.yaml", tmp_path / "no.yaml", "--into", tmp_path)
+    assert (code, out, err) == (2, "", f"{tmp_path / 'no.yaml'}: there is no such file\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_goldens_lie_beside_their_scenes_unless_a_folder_is_named(cli, pair, tmp_path, monkeypatch):
+    scene, _, _ = pair
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    code, out, _ = cli("golden", "check", scene)
+    assert (code, out) == (
+        1,
+        f"{scene}: there is no golden {tmp_path / 'golden' / 'pair.golden.json'}; "
+        f"record it with: atomsim golden record {scene}\n",
+    )
+    assert cli("golden", "record", scene)[0] == 0
+    assert {path.name for path in (tmp_path / "golden").iterdir()} == {"pair.golden.json", "LOG.md"}
+    assert list((tmp_path / "elsewhere").iterdir()) == []
+    assert cli("golden", "check", scene)[:2] == (0, f"{scene}: identical, 19 rounds\n")
+
+
+@pytest.mark.parametrize("action", ["record", "check"])
+@pytest.mark.parametrize("name", ["pair.golden.json", "LOG.md"])
+def test_a_pipe_is_no_golden(cli, pair, tmp_path, action, name):
+    os.mkfifo(tmp_path / name)
+    code, out, err = cli("golden", action, pair[0], "--into", tmp_path, *["--reason", "x"][: 2 * (action == "record")])
+    assert (code, out, err) == (2, "", f"{tmp_path / name}: is not a regular file\n")
+    assert (tmp_path / name).is_fifo()
 
 
 def test_recording_again_asks_for_a_reason_and_logs_it(cli, tmp_path):
@@ -201,13 +235,12 @@ def test_a_full_disk_leaves_the_old_golden_and_no_litter(cli, tmp_path, pair, mo
     assert cli("golden", "record", scene, "--into", folder)[0] == 0
     before = {path: path.read_bytes() for path in folder.iterdir()}
 
-    def half(self, text):
-        self.write_bytes(text[: len(text) // 2].encode())
+    def refused(self, target):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", half)
+    monkeypatch.setattr(Path, "replace", refused)
     code, _, err = cli("golden", "record", scene, "--into", folder, "--reason", "another")
-    assert (code, err) == (1, f"{folder}: cannot be written: No space left on device\n")
+    assert (code, err) == (1, f"{folder / 'pair.golden.json'}: cannot be written: No space left on device\n")
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 

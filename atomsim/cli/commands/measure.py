@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from atomsim.cli.options import output, rounds_in
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
@@ -40,22 +41,18 @@ def measure(
             help='What to measure, such as "height of ring".  [default: height and speed of what moves]',
         ),
     ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="CSV", help="Write a table with every digit into this file."),
-    ] = None,
+    output: Annotated[Path | None, output("CSV", "Write a table with every digit into this file.")] = None,
     rounds: Annotated[
         str | None, typer.Option(metavar="0,250,...", help="Measure only the frames nearest to these rounds.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is no table of atomsim's.")] = False,
 ) -> None:
-    from atomsim.cli.commands.render import _rounds
     from atomsim.measures.series import columns_of
     from atomsim.measures.series import rows as measured_rows
     from atomsim.tasks import measure as tables
     from atomsim.trajectory import Trajectory
 
-    wanted = None if rounds is None else _rounds(rounds)
+    wanted = rounds_in(rounds)
     if output is not None:
         tables.check_table(output)
         if output.exists() and not force and not tables.is_our_table(output):

@@ -7,7 +7,7 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from atomsim.cli.options import file_to_write, output
+from atomsim.cli.options import file_to_write, output, rounds_in
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
@@ -54,12 +54,11 @@ def render(
 
     if frames is not None and output is not None:
         raise InputError("--frames writes pictures into its folder, and no strip; -o does not go with it")
-    wanted = None if rounds is None else _rounds(rounds)
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
     if frames is not None:
         written = pictures.render_frames(
-            trajectories, frames, rounds=wanted, camera=angles, size=pixels, notice=_notice
+            trajectories, frames, rounds=rounds_in(rounds), camera=angles, size=pixels, notice=_notice
         )
         say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
@@ -68,23 +67,12 @@ def render(
     is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
     if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
         raise InputError(f"{picture} exists and atomsim did not draw it", Remedy("replace"))
-    pictures.render(trajectories, picture, rounds=wanted, camera=angles, size=pixels, notice=_notice)
+    pictures.render(trajectories, picture, rounds=rounds_in(rounds), camera=angles, size=pixels, notice=_notice)
     say(str(picture))
 
 
 def _notice(notice: Notice) -> None:
     tell(with_remedies(notice))
-
-
-def _rounds(text: str) -> list[int]:
-    """Read `0,250,500`."""
-    try:
-        rounds = [int(part) for part in text.split(",")]
-    except ValueError:
-        rounds = [-1]
-    if any(round_index < 0 for round_index in rounds):
-        raise InputError(f"--rounds needs whole numbers with commas between, as in 0,250,500 (got {text})")
-    return rounds
 
 
 def _pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
