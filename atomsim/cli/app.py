@@ -71,5 +71,7 @@ def run_typed() -> int:
     except UsageError as error:
         raise InputError(in_our_words(error)) from None
     except SystemExit as end:  # a run that was stopped at once, or a script for completion
+        if isinstance(end.code, str):
+            raise
         code = end.code
     return code if isinstance(code, int) else 0
