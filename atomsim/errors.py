@@ -8,7 +8,17 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 RemedyKind: TypeAlias = Literal[
-    "replace", "rename", "go on", "begin", "recover", "more rounds", "new file", "show scene", "record golden", "numpy"
+    "replace",
+    "rename",
+    "run",
+    "go on",
+    "begin",
+    "recover",
+    "more rounds",
+    "new file",
+    "show scene",
+    "record golden",
+    "numpy",
 ]
 
 

@@ -47,6 +47,8 @@ def in_words(remedy: Remedy) -> str:
             return "add --force to replace it"
         case "rename":
             return "choose another name with -o"
+        case "run":
+            return f"to run it: {command('run', path)}"
         case "go on":
             return f"to go on: {command('run --resume', path)}"
         case "begin":

@@ -15,6 +15,7 @@ import numpy as np
 from atomsim import arguments
 from atomsim.core.model import Floats, Frame, Indices, State
 from atomsim.errors import InputError, Notice, Remedy
+from atomsim.trajectory.foreign import HDF5_SIGNATURE, N_BYTES, require_hdf5
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
 from atomsim.trajectory.header import End, Header, Versions
 from atomsim.trajectory.journal.form import HEAD, journal_path
@@ -22,12 +23,16 @@ from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
 from atomsim.version import __version__
 
-_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
+def is_ours(path: Path) -> bool:
+    """Tell whether a regular file is a trajectory or a journal of ours, though it may be damaged."""
+    start = first_bytes(path, N_BYTES)
+    if not start.startswith(HDF5_SIGNATURE):
+        return start.startswith(HEAD)
+    from atomsim.trajectory.hdf5.read import is_ours
 
-def is_trajectory(path: Path) -> bool:
-    """Tell whether a regular file begins as a trajectory or a journal does; what follows may be damaged."""
-    return first_bytes(path, 8) in (HEAD, _HDF5_SIGNATURE)
+    # What cannot be opened is judged by the name that stands near the beginning of each file of ours.
+    return b"atomsim" in start if (answer := is_ours(path)) is None else answer
 
 
 def later_version(path: Path, versions: Versions) -> Notice:
@@ -108,8 +113,8 @@ class Trajectory(Sequence[Frame]):
         self.end = self._source.end
 
     def _opened(self, found: Path) -> _Source:
-        signature = first_bytes(found, 8)
-        self.from_journal = signature == HEAD
+        start = first_bytes(found, N_BYTES)
+        self.from_journal = start.startswith(HEAD)
         self.lost_bytes = 0
         if self.from_journal:
             journal = Journal(os.open(found, os.O_RDONLY | os.O_CLOEXEC))
@@ -118,8 +123,7 @@ class Trajectory(Sequence[Frame]):
                 raise InputError(f"{found}: holds no frame yet", Remedy("begin", self.path))
             self.lost_bytes = journal.lost
             return journal
-        if signature != _HDF5_SIGNATURE:
-            raise DamageError("not a trajectory of atomsim")
+        require_hdf5(found, start)
         # Deferred because HDF5 takes longer to import than a small scene to run.
         from atomsim.trajectory.hdf5.read import Finished
 

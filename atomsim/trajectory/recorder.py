@@ -22,7 +22,7 @@ from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal.form import SUFFIX, journal_path
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.journal.write import JournalWriter, TamperedError
-from atomsim.trajectory.reader import Trajectory, is_trajectory
+from atomsim.trajectory.reader import Trajectory, is_ours
 from atomsim.trajectory.rows import fill, row_dtype
 
 BLOCK_SECONDS = 1.0
@@ -242,7 +242,7 @@ def _check_free(path: Path, *, replace: bool) -> None:
     if is_protected(path):
         raise InputError(f"{path}: is write-protected", Remedy("rename"))
     for taken in (path, journal_path(path)):
-        if taken.exists() and not is_trajectory(taken):
+        if taken.exists() and not is_ours(taken):
             raise InputError(f"{taken} exists and is no trajectory", Remedy("rename"))
         if taken.exists() and not replace:
             raise InputError(f"{taken} exists", Remedy("replace"), Remedy("go on", path))

@@ -13,6 +13,7 @@ from atomsim.core.memory import Memory
 from atomsim.core.model import State
 from atomsim.trajectory.document import Kind, check_version, contents_digest, end_from, fields, header_from
 from atomsim.trajectory.guard import DamageError, check_room, odd
+from atomsim.trajectory.hdf5.foreign import require_ours
 from atomsim.trajectory.hdf5.hardening import PlainFile
 from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
 from atomsim.trajectory.header import Header
@@ -36,6 +37,7 @@ class Finished:
         """
         self._file = _opened(path)
         try:
+            require_ours(self._file)
             self._read(PlainFile(self._file, path.stat().st_size))
         except BaseException:
             self.close()
@@ -68,6 +70,18 @@ class Finished:
         check_room(sum(array.n_bytes for array in self.header.memory))
         if not self._position.compressed == self._velocity.compressed == self.header.compress:
             raise odd("it is compressed in another way")
+
+
+def is_ours(path: Path) -> bool | None:
+    """Tell whether an HDF5 file has anything of ours in it; None if it is too damaged to tell."""
+    try:
+        with _opened(path) as file:
+            require_ours(file)
+    except DamageError:
+        return False
+    except Exception:  # HDF5 answers damage with nearly every kind
+        return None
+    return True
 
 
 def _opened(path: Path) -> Any:

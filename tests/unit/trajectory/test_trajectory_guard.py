@@ -208,7 +208,7 @@ HOSTILE: dict[str, tuple[Callable[[h5py.File], None], str]] = {
     ),
     "nothing of ours": (
         keep_only_text,
-        "damaged, or not a trajectory of atomsim (`parameters/atomsim/schema_version` is missing)",
+        "is an HDF5 file of another program, not a trajectory of atomsim; read it with h5py",
     ),
 }
 
