@@ -38,7 +38,7 @@ A [tutorial](tutorial.md) builds one step by step; editors complete and check sc
 
 An unknown key is an error, and so is a value of the wrong type: nothing is guessed. `null` counts as not written; a key
 without a value is an error, which finds `color: #ff0000`: `#` begins a comment, so such a color needs quotes.
-Numbers may be written `1e-9`; booleans are `true` and `false`.
+Numbers may be written `1e-9`, whole ones `1e6`, and none `1,000`; booleans are `true` and `false`.
 
 ## Words used below
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from atomsim.scene.declarations import declarations
 from atomsim.scene.language import Declaration
+from atomsim.scene.source import KeyPath
 from atomsim.scene.value_schema import Schema, in_words, value_schema
 
 
@@ -37,9 +38,20 @@ def field_doc(declaration: type[Declaration], key: str) -> FieldDoc:
     return FieldDoc(form(declaration, key), _default_in_words(declaration, key), descriptions(declaration)[key])
 
 
-def form(declaration: type[Declaration], key: str) -> str:
-    """Return how the value under a key is written: `[x, y, z]`."""
-    return in_words(value_schema(declaration, key))
+def form(declaration: type[Declaration], key: str, inside: KeyPath = ()) -> str:
+    """Return how the value under a key is written, `[x, y, z]`, or what is inside it at a path of indices."""
+    schema = value_schema(declaration, key)
+    for index in inside:
+        schema = _item(schema, index)
+    return in_words(schema)
+
+
+def _item(schema: Schema, index: str | int) -> Schema:
+    """Return the schema of an item of a list."""
+    if "prefixItems" in schema:
+        return dict(schema["prefixItems"][index])
+    lists = [option for option in (schema, *schema.get("anyOf", ())) if "items" in option]
+    return dict(lists[0]["items"])
 
 
 def default(declaration: type[Declaration], key: str) -> Schema:

@@ -9,19 +9,16 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from atomsim.errors import Problem, SceneError
+from atomsim.errors import SceneError
 from atomsim.scene.files import read_scene_file, read_scene_text
 from atomsim.scene.language import Scene
 from atomsim.scene.mistakes.blanks import check_blanks
+from atomsim.scene.mistakes.mistake import Mistake, told
 from atomsim.scene.mistakes.references import check_deletions, check_references, check_silences
-from atomsim.scene.mistakes.wording import printable
 from atomsim.scene.overrides import override
 from atomsim.scene.source import Source
 from atomsim.scene.yaml.tree import Node, Places, without_nulls
 from atomsim.scene.yaml.written import to_yaml
-
-MAX_PROBLEMS = 100
-"""Further mistakes are counted, not listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,34 +70,20 @@ def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
     data = root.plain()
     source = Source(name=name, overrides=overrides, marks=Places(root))
     present = without_nulls(data)
-    problems = [*check_blanks(root, data), *check_deletions(root)]
-    problems += [*check_references(present, source), *check_silences(present, source)]
-    scene = _validated(data, source, problems)
-    if problems or scene is None:
-        raise SceneError(_in_order(problems, source))
+    mistakes = [*check_blanks(root, data), *check_deletions(root)]
+    mistakes += [*check_references(present, source), *check_silences(present, source)]
+    scene = _validated(data, source, mistakes)
+    if mistakes or scene is None:
+        raise SceneError(told(mistakes, source))
     return LoadedScene(scene, Source(name, to_yaml(present), overrides, source.marks))
 
 
-def _validated(data: dict[str, Any], source: Source, problems: list[Problem]) -> Scene | None:
-    """Make a scene of plain data, or add to the problems what is wrong with them."""
+def _validated(data: dict[str, Any], source: Source, mistakes: list[Mistake]) -> Scene | None:
+    """Make a scene of plain data, or add to the mistakes what is wrong with them."""
     try:
         return Scene.model_validate(data)
     except ValidationError as error:
         from atomsim.scene.mistakes.complaints import complaints  # only a mistake needs it
 
-        problems += complaints(error, data, source)
+        mistakes += complaints(error, data, source)
         return None
-
-
-def _in_order(problems: list[Problem], source: Source) -> list[Problem]:
-    """Sort problems by place, those of the file itself before those of the files it extends."""
-
-    def place(problem: Problem) -> tuple[bool, str, int, int]:
-        mark = problem.mark
-        return mark.file != printable(source.name), mark.file, mark.line, mark.column
-
-    ordered = sorted(problems, key=place)
-    more = len(ordered) - MAX_PROBLEMS
-    if more <= 0:
-        return ordered
-    return [*ordered[:MAX_PROBLEMS], source.problem((), f"and {more} more mistakes")]

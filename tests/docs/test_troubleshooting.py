@@ -16,8 +16,8 @@ SOURCES = sorted(path for path in (ROOT / "atomsim").rglob("*.py") if "css_color
 
 RAISED = {
     "InputError", "RunError", "BlowUpError", "DamageError", "odd", "SelectionError", "RuleError", "MemoryError",
-    "SelectionSyntaxError", "MeasureSyntaxError", "MeasureError", "PydanticCustomError", "Complaint", "Problem",
-    "problem", "refused", "_refused", "_refuse", "_complain", "_unreadable",
+    "SelectionSyntaxError", "MeasureSyntaxError", "MeasureError", "PydanticCustomError", "Complaint", "Mistake",
+    "Problem", "problem", "refused", "_refused", "_refuse", "_complain", "_unreadable",
 }  # fmt: skip
 """By these a message leaves the code."""
 

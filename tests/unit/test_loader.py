@@ -10,7 +10,8 @@ import pytest
 from support.process import finish, python
 
 from atomsim.errors import Mark, SceneError
-from atomsim.scene.loader import MAX_PROBLEMS, load, loads
+from atomsim.scene.loader import load, loads
+from atomsim.scene.mistakes.mistake import MOST_TOLD
 from atomsim.scene.schema import schema
 from atomsim.scene.yaml.tree import Node, merge, without_nulls
 
@@ -92,6 +93,14 @@ def test_byte_order_mark_and_line_ends_of_windows(folder: Path) -> None:
 
 def test_a_null_is_not_there() -> None:
     assert loads(GOOD + "jitter:\nbonds: {a: null}\nrender: {camera: ~}\n").scene == loads(GOOD).scene
+
+
+def test_a_whole_number_may_be_written_as_a_power() -> None:
+    text = GOOD.replace("rounds: 100", "rounds: 1e3").replace("count: 20", "count: 2.0e1")
+    loaded = loads(text, overrides=["record_every=1E2", "groups.rod.count=3.0"])
+    assert (loaded.scene.rounds, loaded.scene.groups["ring"].count, loaded.scene.record_every) == (1000, 20, 100)
+    assert all(type(number) is int for number in (loaded.scene.rounds, loaded.scene.groups["rod"].count))
+    assert loads(loaded.source.text).scene == loaded.scene
 
 
 def test_a_scene_can_be_piped() -> None:
@@ -360,7 +369,7 @@ def test_too_many_mistakes_are_counted() -> None:
         loads(
             f"atomsim: 1\ntime_step: 1\nrounds: 1\ngroups: {{a: {{shape: atoms, positions: [{positions}]}}}}", "s.yaml"
         )
-    assert len(caught.value.problems) == MAX_PROBLEMS + 1
+    assert len(caught.value.problems) == MOST_TOLD + 1
     assert str(caught.value.problems[-1]) == "s.yaml:1:1: and 900 more mistakes"
 
 

@@ -107,6 +107,8 @@ def test_shipped_scene_agrees_with_the_schema(path: Path, validator: jsonschema.
     ("path", "value"),
     [
         ("groups.ring.radius", 4.5),
+        ("groups.ring.count", 20.0),
+        ("rounds", 1e3),
         ("groups.ring.centre", [1, 2, 3]),
         ("groups.ring.rotate", [{"axis": [0, 0, 1], "degrees": 3}]),
         ("groups.ring.color", None),
@@ -189,7 +191,7 @@ def test_types_and_defaults_in_words() -> None:
         "color": ("color", ""),
     }
     assert table["Damping"]["coefficient"].type == "number ≥ 0 and ≤ 1"
-    assert table["ListedBonds"]["pairs"].type == "[[whole number ≥ 0, whole number ≥ 0], …]"
+    assert table["ListedBonds"]["pairs"].type == "[[i, k], …]"
     assert table["Spin"]["axis"].type == "x, y, z or [x, y, z]"
     assert table["Damping"]["acts_on"].default == '["all"]'
 

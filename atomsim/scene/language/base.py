@@ -46,10 +46,16 @@ NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
 LARGEST_WHOLE_NUMBER = 10**15
 """More than any scene needs, and exact in every number type that meets it (int64, float64, JSON)."""
 
-Count = Annotated[int, Field(ge=1, le=LARGEST_WHOLE_NUMBER)]
+
+def _as_whole(value: Any) -> Any:
+    """Take 1e3 for the whole number it is, as JSON does."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+Count = Annotated[int, Field(ge=1, le=LARGEST_WHOLE_NUMBER), BeforeValidator(_as_whole)]
 """A whole number, one or more."""
 
-Round = Annotated[int, Field(ge=0, le=LARGEST_WHOLE_NUMBER)]
+Round = Annotated[int, Field(ge=0, le=LARGEST_WHOLE_NUMBER), BeforeValidator(_as_whole)]
 """An iteration round: a whole number, zero or more."""
 
 Vector = Annotated[tuple[Number, Number, Number], Field(strict=False, title="[x, y, z]")]

@@ -20,6 +20,10 @@ def _require_one(declaration: Declaration, *keys: str) -> None:
         raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)
 
 
+AtomPair = Annotated[tuple[Round, Round], Field(strict=False, title="[i, k]")]
+"""Two places in selections, counted from 0."""
+
+
 class BondBase(Declaration):
     """What every bond declaration has besides its rule."""
 
@@ -77,7 +81,7 @@ class ListedBonds(BondBetweenBase):
 
     rule: Literal["pairs"]
     """The pairs listed under `pairs`."""
-    pairs: Annotated[tuple[Annotated[tuple[Round, Round], Field(strict=False)], ...], Field(strict=False, min_length=1)]
+    pairs: Annotated[tuple[AtomPair, ...], Field(strict=False, min_length=1)]
     """[[i, k], …]: indices into `within`, or the first into A and the second into B of `between: [A, B]`."""
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
-from atomsim.errors import Problem
+from atomsim.scene.mistakes.mistake import Mistake
 from atomsim.scene.mistakes.wording import readable, shown
-from atomsim.scene.source import KeyPath, dotted
+from atomsim.scene.source import KeyPath
 from atomsim.scene.yaml.tree import Node
 
 
-def check_blanks(root: Node, data: dict[str, Any]) -> list[Problem]:
+def check_blanks(root: Node, data: dict[str, Any]) -> list[Mistake]:
     """Find keys that may be left out, and are written without a value.
 
     A key that must have a value is left to validation. A section or a name with nothing below it is one whose contents
@@ -23,7 +24,7 @@ def check_blanks(root: Node, data: dict[str, Any]) -> list[Problem]:
         data: its plain data.
     """
     return [
-        Problem(node.mark, dotted(path), _message(str(path[-1]), node.blank or ""))
+        Mistake(node.mark, path, partial(_message, str(path[-1]), node.blank or ""))
         for path, node in _blanks(root, ())
         if _is_single(path, data)
     ]

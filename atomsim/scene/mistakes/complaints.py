@@ -1,78 +1,35 @@
-"""The findings of pydantic in the words of the scene language; knows the data model, not how scenes are read."""
+"""The findings of pydantic in the words of the scene language, each at the place where the user wrote it."""
 
 from __future__ import annotations
 
-import re
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from atomsim.errors import Problem
-from atomsim.scene.declarations import declaration_at, discriminator, sections
+from atomsim.scene.declarations import declaration_at, sections
 from atomsim.scene.field_docs import descriptions, form
-from atomsim.scene.language.css_colors import CSS_COLORS
-from atomsim.scene.mistakes.wording import NEEDS_BRACKETS, either, meant, readable, shown, suggestion
-from atomsim.scene.overrides import is_setting
+from atomsim.scene.language import Scene
+from atomsim.scene.mistakes.hints import hint, hint_of_list
+from atomsim.scene.mistakes.mistake import Mistake
+from atomsim.scene.mistakes.unknown import (
+    MOST_LOOKED_AT,
+    Written,
+    meant_key,
+    misnamed,
+    missing_word,
+    unknown_key,
+    unknown_word,
+    value_at,
+    written_word,
+)
+from atomsim.scene.mistakes.wording import shown
 from atomsim.scene.source import KeyPath, Source
-from atomsim.scene.yaml.scalars import is_number
 
-_BOOLEANS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
-
-
-def complaints(error: ValidationError, data: Any, source: Source) -> list[Problem]:
-    """Translate everything that pydantic found.
-
-    Args:
-        error: what validating the scene raised.
-        data: the plain data that were validated.
-        source: the places of the values.
-    """
-    findings = [found for found in error.errors(include_url=False) if not _is_echo(found, data)]
-    last_by_place = {(found["type"], _path(found, data)): found for found in findings}
-    return [_complaint(found, data, source) for found in last_by_place.values()]
-
-
-def _is_echo(found: ErrorDetails, data: Any) -> bool:
-    """Tell whether a list is called too short only because its items, which are complained of too, did not count."""
-    value = _value(_path(found, data), data)
-    return found["type"] == "too_short" and isinstance(value, list) and len(value) >= found["ctx"]["min_length"]
-
-
-def _complaint(found: ErrorDetails, data: Any, source: Source) -> Problem:
-    path = _path(found, data)
-    value = _value(path, data)
-    match found["type"]:
-        case "union_tag_not_found" | "union_tag_invalid":
-            return _unknown_word(found, path, data, source)
-        case "missing" if isinstance(found["loc"][-1], str):
-            message = _missing(path, data)
-        case "missing" | "too_long" | "tuple_type":
-            message = f"needs {_form(found, path, data)} (got {shown(value)})"
-        case "extra_forbidden":
-            message = _unknown_key(path, data, source)
-        case "model_type" | "model_attributes_type" | "dict_type":
-            message = f"needs a mapping {_keys(path, data)} (got {shown(value)}{_indentation(path)})"
-        case "name":
-            message = f"{found['msg']} (got {shown(path[-1])})"
-        case "one_of":
-            message = found["msg"] + _misnamed(path, data, source)
-        case kind if kind in _SAYS_ALL:
-            message = found["msg"]
-        case kind:
-            needs = _NEEDS[kind].format(**_context(found)) if kind in _NEEDS else found["msg"]
-            message = f"{needs} (got {shown(value)}{_hint(kind, path, value)})"
-    return source.problem(path, message)
-
-
-def _context(found: ErrorDetails) -> dict[str, Any]:
-    """Return the bounds and choices that a finding mentions, as a user writes them."""
-    given = found.get("ctx", {})
-    context = {key: f"{value:g}" if isinstance(value, float) else value for key, value in given.items()}
-    if "expected" in context:
-        context["expected"] = context["expected"].replace("'", "")
-    return context
-
+_NO_WORD = ("union_tag_not_found", "union_tag_invalid")
+"""Findings of a declaration whose kind is not known; pydantic looks no further into it."""
 
 _SAYS_ALL = ("code", "min_gap", "push_rounds", "zero_axis", "selection_syntax")
 """Findings of the language itself that say in their own words what they got."""
@@ -91,13 +48,135 @@ _NEEDS = {
 }
 """What a value needs, by pydantic's name of the finding."""
 
+_Found = dict[tuple[str, KeyPath], ErrorDetails]
+"""Findings by their kind and place."""
 
-def _path(found: ErrorDetails, data: Any) -> KeyPath:
+
+def complaints(error: ValidationError, data: dict[str, Any], source: Source) -> list[Mistake]:
+    """Translate everything that pydantic found.
+
+    A declaration whose kind is misspelt is looked at once more, as what it was meant to be.
+
+    Args:
+        error: what validating the scene raised.
+        data: the plain data that were validated.
+        source: the places of the values.
+    """
+    found = _by_place(error, data)
+    no_words = [path for kind, path in found if kind in _NO_WORD]
+    written = {path: _written_word(path, data) for path in no_words[:MOST_LOOKED_AT]}
+    mistakes = [_without_word(path, written.get(path), data, source) for path in no_words]
+    meant = _as_meant(written, data)
+    if meant != data:
+        try:
+            Scene.model_validate(meant)
+            found = {}
+        except ValidationError as inner:
+            found = _by_place(inner, meant)
+    for key in _missing_though_misspelt(found, meant):
+        del found[key]
+    mistakes += [
+        Mistake(source.mark(path), path, partial(_message, details, path, meant, source))
+        for (kind, path), details in found.items()
+        if kind not in _NO_WORD
+    ]
+    return mistakes
+
+
+def _by_place(error: ValidationError, data: dict[str, Any]) -> _Found:
+    """Return the findings, one of each kind at a place, and none that only echoes others."""
+    found = {(details["type"], _path(details, data)): details for details in error.errors(include_url=False)}
+    return {(kind, path): details for (kind, path), details in found.items() if not _is_echo(details, path, data)}
+
+
+def _is_echo(details: ErrorDetails, path: KeyPath, data: Any) -> bool:
+    """Tell whether a list is called too short only because its items, which are complained of too, did not count."""
+    if details["type"] != "too_short":
+        return False
+    value = value_at(path, data)
+    return isinstance(value, list) and len(value) >= details["ctx"]["min_length"]
+
+
+def _written_word(path: KeyPath, data: dict[str, Any]) -> Written | None:
+    return written_word(value_at(path, data), sections()[str(path[0])])
+
+
+def _without_word(path: KeyPath, written: Written | None, data: dict[str, Any], source: Source) -> Mistake:
+    """Complain about a declaration that does not say of which kind it is, or of one that there is not."""
+    section, declared = sections()[str(path[0])], value_at(path, data)
+    if section.key in declared:
+        at = (*path, str(section.key))
+        return Mistake(source.mark(at), at, partial(unknown_word, section, declared))
+    at = (*path, written.key if written is not None else str(section.key))
+    return Mistake(source.mark(at), at, partial(missing_word, section, written, path, data, source))
+
+
+def _as_meant(words: dict[KeyPath, Written | None], data: dict[str, Any]) -> dict[str, Any]:
+    """Return the data in which declarations say of which kind they are meant to be, as far as that is known."""
+    meant = {
+        key: dict(value) if key in sections() and isinstance(value, dict) else value for key, value in data.items()
+    }
+    for (section, name), written in words.items():
+        if written is not None and written.word is not None:
+            kept = {key: value for key, value in data[str(section)][name].items() if key != written.key}
+            meant[str(section)][name] = {sections()[str(section)].key: written.word, **kept}
+    return meant
+
+
+def _missing_though_misspelt(found: _Found, data: dict[str, Any]) -> Iterator[tuple[str, KeyPath]]:
+    """Yield the findings of keys that are missing only because they are misspelt, which is complained of too."""
+    missing: dict[KeyPath, set[str]] = {}
+    for kind, path in found:
+        if kind == "missing" and path and isinstance(path[-1], str):
+            missing.setdefault(path[:-1], set()).add(path[-1])
+    unknown = ((path[:-1], str(path[-1])) for kind, path in found if kind == "extra_forbidden")
+    beside = [(parent, key) for parent, key in unknown if parent in missing][:MOST_LOOKED_AT]
+    found_out = set()
+    for parent, key in beside:
+        declaration = declaration_at(parent, data)
+        meant = meant_key(key, list(descriptions(declaration))) if declaration is not None else None
+        if meant in missing[parent]:
+            found_out.add(("missing", (*parent, str(meant))))
+    yield from found_out
+
+
+def _message(details: ErrorDetails, path: KeyPath, data: dict[str, Any], source: Source) -> str:
+    value = value_at(path, data)
+    match details["type"]:
+        case "missing" if isinstance(details["loc"][-1], str):
+            return _missing(path, data)
+        case "missing" | "too_long" | "tuple_type":
+            return f"needs {_form(path, data)} (got {shown(value)}{hint_of_list(value)})"
+        case "extra_forbidden":
+            return unknown_key(path, data, source)
+        case "model_type" | "model_attributes_type" | "dict_type":
+            return f"needs a mapping {_keys(path, data)} (got {shown(value)}{_indentation(path)})"
+        case "name":
+            return f"{details['msg']} (got {shown(path[-1])})"
+        case "one_of":
+            return details["msg"] + misnamed(path, data, source)
+        case kind if kind in _SAYS_ALL:
+            return details["msg"]
+        case kind:
+            needs = _NEEDS[kind].format(**_context(details)) if kind in _NEEDS else details["msg"]
+            return f"{needs} (got {shown(value)}{hint(kind, path, value)})"
+
+
+def _context(details: ErrorDetails) -> dict[str, Any]:
+    """Return the bounds and choices that a finding mentions, as a user writes them."""
+    given = details.get("ctx", {})
+    context = {key: f"{value:g}" if isinstance(value, float) else value for key, value in given.items()}
+    if "expected" in context:
+        context["expected"] = context["expected"].replace("'", "")
+    return context
+
+
+def _path(details: ErrorDetails, data: Any) -> KeyPath:
     """Return where the user wrote it: without pydantic's marks of keys, chosen words and items made of scalars.
 
     The word that chooses a declaration is put into the path of whatever is inside: (groups, hoop, *ring*, count).
     """
-    loc = found["loc"][:-1] if found["type"] in ("name", "code") else found["loc"]
+    loc = details["loc"][:-1] if details["type"] in ("name", "code") else details["loc"]
     if len(loc) > 2 and _chosen_by(loc) is not None:
         loc = (*loc[:2], *loc[3:])
     path: list[str | int] = []
@@ -106,7 +185,7 @@ def _path(found: ErrorDetails, data: Any) -> KeyPath:
         is_index = isinstance(data, list) and isinstance(part, int) and part < len(data)
         if is_key or is_index:
             path.append(part)
-            data = _value((part,), data)
+            data = value_at((part,), data)
     return tuple(path)
 
 
@@ -116,78 +195,18 @@ def _chosen_by(path: KeyPath) -> str | None:
     return section.key if section is not None else None
 
 
-def _value(path: KeyPath, data: Any) -> Any:
-    """Return the value at a path, None where there is none."""
-    for part in path:
-        data = data.get(part) if isinstance(data, dict) else data[part]
-    return data
-
-
 def _missing(path: KeyPath, data: Any) -> str:
     declaration = declaration_at(path[:-1], data)
     said = descriptions(declaration)[str(path[-1])].rstrip(".") if declaration is not None else ""
-    is_null = path[-1] in _value(path[:-1], data)
+    is_null = path[-1] in value_at(path[:-1], data)
     return f"needs a value (got null): {said}" if is_null else f"missing: {said}"
 
 
-def _form(found: ErrorDetails, path: KeyPath, data: Any) -> str:
-    """Return how a list is written, or at least how long it is."""
-    declaration = declaration_at(path[:-1], data)
-    if declaration is not None:
-        return form(declaration, str(path[-1]))
-    match found:
-        case {"type": "missing", "loc": (*_, int(last))}:
-            return f"{last + 1} entries"
-        case {"type": "too_long", "ctx": {"max_length": n_entries}}:
-            return f"{n_entries} entries"
-    return "a list"
-
-
-def _unknown_key(path: KeyPath, data: Any, source: Source) -> str:
-    key = str(path[-1])
-    declaration = declaration_at(path[:-1], data)
-    keys = list(descriptions(declaration)) if declaration is not None else []
-    message = f"unknown key `{readable(key)}`; "
-    before_colon = key.partition(":")[0].strip()
-    if ":" in key and before_colon in keys:
-        return f"{message}write `{before_colon}: ` with a space after the colon"
-    if is_number(key) and _value(path, data) is None:
-        return message + NEEDS_BRACKETS
-    chosen = discriminator(declaration) if declaration is not None else None
-    words = sections()[str(path[0])].words if chosen is not None else {}
-    owners = [word for word, other in words.items() if key in other.model_fields]
-    mark, reopened = source.mark(path), source.mark(path[:-1])
-    if mark.file != reopened.file and not is_setting(mark) and (owners or suggestion(key, keys) is None):
-        return f"{message}to drop what is extended, write `{readable(key)}: null` in {reopened.file}"
-    if chosen is None:
-        return message + meant(key, keys, "the keys here are")
-    kind, word = chosen
-    if owners:
-        return f"{message}it belongs to {kind} {either(owners)}; the keys of {kind} {word} are {', '.join(keys)}"
-    return message + meant(key, keys, f"the keys of {kind} {word} are")
-
-
-def _misnamed(path: KeyPath, data: Any, source: Source) -> str:
-    """Say which declaration of another file was probably meant to be changed, where a name is new."""
-    here = source.mark(path).file
-    section = path[:-1]
-    inherited = [name for name in _value(section, data) if source.mark((*section, name)).file != here]
-    close = suggestion(str(path[-1]), inherited)
-    return f"; did you mean `{readable(close)}`?" if close is not None else ""
-
-
-def _unknown_word(found: ErrorDetails, path: KeyPath, data: Any, source: Source) -> Problem:
-    """Complain about the word that chooses a declaration: the shape, rule or kind."""
-    key = found["ctx"]["discriminator"].strip("'")
-    words = list(sections()[str(path[0])].words)
-    declared = _value(path, data)
-    if key not in declared:
-        return source.problem((*path, key), f"missing: {either(words)}{_misnamed(path, data, source)}")
-    value = declared[key]
-    if not isinstance(value, str):
-        return source.problem((*path, key), f"needs {either(words)} (got {shown(value)})")
-    remedy = meant(value, words, f"the {key}s are")
-    return source.problem((*path, key), f"unknown {key} {shown(value)}; {remedy}")
+def _form(path: KeyPath, data: Any) -> str:
+    """Return how a list is written: the value under a key, or an item in it."""
+    key = next(place for place in range(len(path) - 1, -1, -1) if isinstance(path[place], str))
+    declaration = declaration_at(path[:key], data)
+    return form(declaration, str(path[key]), path[key + 1 :]) if declaration is not None else "a list"
 
 
 def _keys(path: KeyPath, data: Any) -> str:
@@ -204,25 +223,3 @@ def _indentation(path: KeyPath) -> str:
     section = sections().get(str(path[0]))
     is_key = any(path[-1] in declaration.model_fields for declaration in section.declarations) if section else False
     return "; indent it under the name" if len(path) == 2 and is_key else ""
-
-
-def _hint(kind: str, path: KeyPath, value: Any) -> str:
-    """Say how to write what was probably meant."""
-    if kind == "string_type" and len(path) == 1 and not isinstance(value, (dict, list)):
-        return f'; write "{shown(value)}"'
-    if kind == "version" and str(value) in ("1", "1.0"):
-        return "; remove the quotes" if value == "1" else "; write 1"
-    if kind in ("float_type", "int_type") and isinstance(value, str):
-        if is_number(value):
-            return "; remove the quotes"
-        plain = re.sub(r"^([-+]?)0+(?=[0-9])", r"\1", value.replace("_", "").replace(",", "."))
-        return f"; write {plain}" if plain != value and is_number(plain) else ""
-    if kind == "int_type" and isinstance(value, float) and value.is_integer():
-        return f"; write {int(value)}"
-    if kind == "bool_type" and isinstance(value, str):
-        word = _BOOLEANS.get(value.lower(), value.lower())
-        return f"; write {word}" if word in ("true", "false") else ""
-    if kind == "color" and isinstance(value, str):
-        close = suggestion(value, CSS_COLORS)
-        return f"; did you mean {close}?" if close is not None else ""
-    return ""

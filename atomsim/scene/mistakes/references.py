@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
-from atomsim.errors import Problem
 from atomsim.scene.declarations import sections, selecting_keys
 from atomsim.scene.language import Scene
 from atomsim.scene.language.selection import SelectionSyntaxError, parse_selection
+from atomsim.scene.mistakes.mistake import Mistake
 from atomsim.scene.mistakes.wording import meant, readable
-from atomsim.scene.source import KeyPath, Source, dotted
+from atomsim.scene.source import KeyPath, Source
 from atomsim.scene.yaml.tree import Node
 
 
-def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
+def check_references(data: dict[str, Any], source: Source) -> list[Mistake]:
     """Find names that are no groups.
 
     Args:
@@ -25,49 +26,64 @@ def check_references(data: dict[str, Any], source: Source) -> list[Problem]:
     groups = list(_mapping(data.get("groups")))
     if not groups:
         return []
+    known = {"all", *groups}
     return [
-        source.problem(path, f"there is no group `{readable(name)}`; {meant(name, groups, 'the groups are')}")
+        Mistake(source.mark(path), path, partial(_no_such_group, name, groups))
         for path, name in [*_selected(data), *_colored(data)]
-        if name not in groups and name != "all"
+        if name not in known
     ]
 
 
-def check_silences(data: dict[str, Any], source: Source) -> list[Problem]:
+def _no_such_group(name: str, groups: list[str]) -> str:
+    return f"there is no group `{readable(name)}`; {meant(name, groups, 'the groups are')}"
+
+
+def check_silences(data: dict[str, Any], source: Source) -> list[Mistake]:
     """Find names of silences that lead to nothing in the scene.
 
     Args:
         data: the plain data of a scene without nulls; what is malformed is left to validation.
         source: the places of the values.
     """
-    problems = []
-    for path, text in _silenced(data):
-        section, _, name = text.partition(".")
-        if section not in Scene.model_fields:
-            remedy = meant(section, Scene.model_fields, "paths begin with")
-            problems.append(source.problem(path, f"there is no `{readable(section)}` in a scene; {remedy}"))
-        elif section in sections() and name and name not in (there := _mapping(data.get(section))):
-            remedy = meant(name, there, f"the {section} are") if there else f"there are no {section}"
-            problems.append(source.problem(path, f"there is no `{readable(text)}`; {remedy}"))
-    return problems
+    return [
+        Mistake(source.mark(path), path, partial(_nothing_to_silence, section, text, data))
+        for path, text in _silenced(data)
+        for section, _, name in [text.partition(".")]
+        if section not in Scene.model_fields
+        or (section in sections() and name and name not in _mapping(data.get(section)))
+    ]
 
 
-def check_deletions(root: Node) -> list[Problem]:
+def _nothing_to_silence(section: str, text: str, data: dict[str, Any]) -> str:
+    if section not in Scene.model_fields:
+        return f"there is no `{readable(section)}` in a scene; {meant(section, Scene.model_fields, 'paths begin with')}"
+    there = _mapping(data.get(section))
+    remedy = meant(text.partition(".")[2], there, f"the {section} are") if there else f"there are no {section}"
+    return f"there is no `{readable(text)}`; {remedy}"
+
+
+def check_deletions(root: Node) -> list[Mistake]:
     """Find names that a scene deletes and what it extends does not have.
 
     Args:
         root: the merged tree of a scene; what is malformed is left to validation.
     """
-    problems = []
+    mistakes = []
     for section in sections():
         named = root.child(section)
         entries = named.value if named is not None and isinstance(named.value, dict) else {}
         present = [name for name, node in entries.items() if node.value is not None]
         for name, node in entries.items():
             if node.deletes_nothing:
-                remedy = meant(name, present, f"the {section} are") if present else f"there are no {section}"
-                message = f"there is no `{readable(name)}` to delete; {remedy}"
-                problems.append(Problem(node.mark, dotted((section, name)), message))
-    return problems
+                mistakes.append(
+                    Mistake(node.mark, (section, name), partial(_nothing_to_delete, section, name, present))
+                )
+    return mistakes
+
+
+def _nothing_to_delete(section: str, name: str, present: list[str]) -> str:
+    remedy = meant(name, present, f"the {section} are") if present else f"there are no {section}"
+    return f"there is no `{readable(name)}` to delete; {remedy}"
 
 
 def _selected(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable
+from itertools import islice
 from typing import Any
 
-NEEDS_BRACKETS = "a list needs brackets, such as [3, 0, 0]"
-"""What helps when `{step: 3, 0, 0}` was taken for keys without values."""
+from atomsim.scene.mistakes.lookalikes import first_odd, plain
 
 _LONGEST = 60
+
+_MOST_COMPARED = 1000
+"""Of more choices than this, only the first may be what was meant: to compare them all would take too long."""
 
 
 def printable(text: str) -> str:
@@ -45,9 +48,19 @@ def suggestion(word: str, choices: Iterable[str]) -> str | None:
     """
     import difflib  # only a mistake needs it
 
-    by_lower_case = {choice.lower(): choice for choice in choices}
-    close = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower_case, n=1, cutoff=0.75)
+    by_lower_case = {choice.lower(): choice for choice in islice(choices, _MOST_COMPARED)}
+    close = difflib.get_close_matches(plain(word[:_LONGEST]).lower(), by_lower_case, n=1, cutoff=0.75)
     return by_lower_case[close[0]] if close else None
+
+
+def did_you_mean(word: str, close: str) -> str:
+    r"""Ask for what was probably meant, and name a character that only looks right.
+
+    >>> did_you_mean("laod", "load"), did_you_mean("lo\u0430d", "load")
+    ('did you mean `load`?', 'did you mean `load`, without U+0430 CYRILLIC SMALL LETTER A?')
+    """
+    odd = first_odd(word, plainly=close)
+    return f"did you mean `{readable(close)}`{f', without {odd}' if odd is not None else ''}?"
 
 
 def either(choices: Iterable[str]) -> str:
@@ -70,9 +83,7 @@ def meant(word: str, choices: Iterable[str], otherwise: str) -> str:
     """
     choices = list(choices)
     close = suggestion(word, choices)
-    if close is not None:
-        return f"did you mean `{readable(close)}`?"
-    return f"{otherwise} {listed(choices)}"
+    return did_you_mean(word, close) if close is not None else f"{otherwise} {listed(choices)}"
 
 
 def listed(choices: list[str], most: int = 20) -> str:

@@ -9,9 +9,11 @@ from dataclasses import replace
 import yaml
 
 from atomsim.errors import Mark, Problem, SceneError
-from atomsim.scene.mistakes.wording import NEEDS_BRACKETS, readable
+from atomsim.scene.mistakes.mistake import first_of
+from atomsim.scene.mistakes.numbers import around
+from atomsim.scene.mistakes.wording import readable
 from atomsim.scene.source import KeyPath, dotted
-from atomsim.scene.yaml.scalars import is_number, resolve
+from atomsim.scene.yaml.scalars import resolve
 from atomsim.scene.yaml.syntax_errors import explain
 from atomsim.scene.yaml.tree import Node
 
@@ -88,7 +90,7 @@ class _Reader:
         if not isinstance(after, yaml.StreamEndEvent):
             self._refuse(after, (), "a second document begins here; a scene is one document")
         if self._problems:
-            raise SceneError(self._problems)
+            raise SceneError(self._told())
         return replace(root, mark=self._place(1, 1))
 
     def check_limits(self, at: KeyPath) -> None:
@@ -111,7 +113,8 @@ class _Reader:
             mark = error.problem_mark or error.context_mark
             self.refused_at = mark.index if mark is not None else None
             place = self._place(mark.line + 1, mark.column + 1) if mark is not None else self._place(1, 1)
-            raise SceneError([*self._problems, Problem(place, "", explain(error, text))]) from None
+            self._problems.append(Problem(place, "", explain(error, text)))
+            raise SceneError(self._told()) from None
 
     def _node(self, event: yaml.Event, path: KeyPath) -> Node:
         """Read the value that an event begins."""
@@ -164,8 +167,7 @@ class _Reader:
             if key in entries:
                 first = entries[key].mark.line
                 where = f", first on line {first}" if first else ""
-                remedy = f"; {NEEDS_BRACKETS}" if node.value is None and is_number(key) else ""
-                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}{remedy}")
+                self._refuse(event, (*path, key), f"duplicate key `{readable(key)}`{where}{_remedy(key, node)}")
             else:
                 entries[key] = replace(node, mark=self._mark(event))
         return entries
@@ -209,11 +211,20 @@ class _Reader:
 
     def _refused(self, event: yaml.Event, path: KeyPath, message: str) -> SceneError:
         self._refuse(event, path, message)
-        return SceneError(self._problems)
+        return SceneError(self._told())
 
     def _too_much(self, event: yaml.Event, message: str) -> SceneError:
         self._refuse(event, (), message)
-        return _TooMuchError(self._problems)
+        return _TooMuchError(self._told())
+
+    def _told(self) -> list[Problem]:
+        return first_of(self._problems, self._place(1, 1))
+
+
+def _remedy(key: str, node: Node) -> str:
+    """Say what was probably meant by a key that stands in a number or a list."""
+    remedy = around(key) if node.value is None else None
+    return f"; {remedy}" if remedy is not None else ""
 
 
 def _extent(node: Node) -> tuple[int, int]:

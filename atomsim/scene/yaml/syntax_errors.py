@@ -6,6 +6,7 @@ import re
 
 import yaml
 
+from atomsim.scene.mistakes.lookalikes import first_odd
 from atomsim.scene.mistakes.wording import shown
 
 _LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
@@ -39,7 +40,7 @@ def explain(error: yaml.MarkedYAMLError, text: str) -> str:
     """
     problem = str(error.problem or error.context)
     mark, context = error.problem_mark, error.context_mark
-    character = _line(text, mark)[mark.column : mark.column + 1] if mark is not None else ""
+    character = _lines(text)[mark.line][mark.column : mark.column + 1] if mark is not None else ""
     if "violates indentation" in problem or character == "\t":
         return "a tab is not allowed here; indent with spaces"
     if "cannot start any token" in problem:
@@ -51,11 +52,24 @@ def explain(error: yaml.MarkedYAMLError, text: str) -> str:
     for pattern, explanation in _EXPLANATIONS:
         if re.search(pattern, problem):
             where = f"line {context.line + 1}" if context is not None else "the line before"
-            comment = "; ` #` begins a comment" if context is not None and " #" in _line(text, context) else ""
-            return explanation.format(context=where) + comment
+            return explanation.format(context=where) + _cause(text, mark, context)
     return f"this is not YAML: {problem}"
 
 
-def _line(text: str, mark: yaml.Mark) -> str:
-    """Return the line of a mark, as YAML counts lines; the end of the text may be marked on the line after the last."""
-    return [*_LINE_BREAK.split(text), ""][mark.line]
+def _cause(text: str, mark: yaml.Mark | None, context: yaml.Mark | None) -> str:
+    """Say what else is odd about the line of a mistake, that where it began, and the one above: the likely cause."""
+    lines = _lines(text)
+    if context is not None and " #" in lines[context.line]:
+        return "; ` #` begins a comment"
+    near = [context.line] if context is not None else []
+    near += [mark.line, mark.line - 1] if mark is not None else []
+    for number in near:
+        odd = first_odd(lines[number]) if 0 <= number < len(lines) else None
+        if odd is not None:
+            return f"; {odd} on line {number + 1} is not what it looks like"
+    return ""
+
+
+def _lines(text: str) -> list[str]:
+    """Return the lines as YAML counts them; the end of the text may be marked on the line after the last."""
+    return [*_LINE_BREAK.split(text), ""]

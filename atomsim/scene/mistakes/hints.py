@@ -1,0 +1,59 @@
+"""How to write what was probably meant by a value of the wrong type."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from atomsim.scene.language.css_colors import CSS_COLORS
+from atomsim.scene.mistakes.lookalikes import plain
+from atomsim.scene.mistakes.numbers import NO_COMMAS, numbers_meant
+from atomsim.scene.mistakes.wording import either, shown, suggestion
+from atomsim.scene.source import KeyPath
+from atomsim.scene.yaml.scalars import is_number
+
+_BOOLEANS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
+
+
+def hint(kind: str, path: KeyPath, value: Any) -> str:
+    """Return what completes a message about a value, `; write 1000`, or nothing.
+
+    Args:
+        kind: pydantic's name of what is wrong.
+        path: where the value stands.
+        value: what was written.
+    """
+    if kind == "string_type" and len(path) == 1 and not isinstance(value, (dict, list)):
+        return f'; write "{shown(value)}"'
+    if kind == "version" and str(value) in ("1", "1.0"):
+        return "; remove the quotes" if value == "1" else "; write 1"
+    if kind in ("float_type", "int_type") and isinstance(value, str):
+        return _hint_of_number(value, path, is_whole=kind == "int_type")
+    if kind == "bool_type" and isinstance(value, str):
+        word = plain(value).lower()
+        word = _BOOLEANS.get(word, word)
+        return f"; write {word}" if word in ("true", "false") else ""
+    if kind == "color" and isinstance(value, str):
+        close = suggestion(value, CSS_COLORS)
+        return f"; did you mean {close}?" if close is not None else ""
+    return ""
+
+
+def hint_of_list(value: Any) -> str:
+    """Return what completes a message about a list that does not have the entries it needs."""
+    texts = value[1:] if isinstance(value, list) else ()
+    return f"; {NO_COMMAS}" if any(map(_ends_number, texts)) else ""
+
+
+def _ends_number(value: Any) -> bool:
+    """Tell whether a text can only be the end of a number with a comma: the `000` of 1,000."""
+    return isinstance(value, str) and re.fullmatch("0[0-9][0-9]", value) is not None
+
+
+def _hint_of_number(text: str, path: KeyPath, *, is_whole: bool) -> str:
+    if is_number(text):
+        return "; remove the quotes"
+    if isinstance(path[-1], int) and path[-1] > 0 and _ends_number(text):
+        return f"; {NO_COMMAS}"
+    meant = numbers_meant(text, is_whole=is_whole)
+    return f"; write {either(meant)}" if meant else ""
