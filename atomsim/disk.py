@@ -69,11 +69,14 @@ def open_locked(path: Path, *, create: bool = False) -> int:
         The file descriptor.
 
     Raises:
+        InputError: it is a pipe or a device.
         RunError: another process holds the file.
         OSError: the file cannot be opened.
     """
     fd = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | (os.O_CREAT if create else 0), 0o666)
     try:
+        if not stat.S_ISREG(os.fstat(fd).st_mode):
+            raise _not_regular(path)
         _lock(fd, path)
     except BaseException:
         os.close(fd)
@@ -179,7 +182,11 @@ def check_regular(path: Path) -> None:
         InputError: as said.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise InputError(f"{path}: is not a regular file")
+        raise _not_regular(path)
+
+
+def _not_regular(path: Path) -> InputError:
+    return InputError(f"{path}: is not a regular file")
 
 
 @contextlib.contextmanager

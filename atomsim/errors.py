@@ -19,6 +19,7 @@ RemedyKind: TypeAlias = Literal[
     "show scene",
     "record golden",
     "numpy",
+    "standard input",
 ]
 
 

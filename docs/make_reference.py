@@ -69,6 +69,17 @@ Wherever atoms are named, a part of a group will do.
 
 NOTES = {
     "atomsim run": """\
+A scene may come from another program. What it extends is looked up in the current folder:
+
+```console
+$ sed 's/count: 70/count: 20/' scenes/rods.yaml | atomsim run - --rounds 100 --quiet
+$ atomsim show out.h5
+out.h5: Two rods collide, bounce apart and vibrate
+  scene      standard input
+  atoms      40: left 20, right 20
+…
+```
+
 With Numba, which is an extra, long runs are faster, to the same bits: `pip install 'atomsim[fast]'`, or in a checkout
 `.venv/bin/pip install -e '.[fast]'`. Without it, or where it is not worth its start, NumPy computes; the second line
 that is printed says which.

@@ -63,6 +63,8 @@ def in_words(remedy: Remedy) -> str:
             return f"to write out its scene: {command('show --scene', path)}"
         case "record golden":
             return "record it with: atomsim golden record"
+        case "standard input":
+            return "read a pipe as standard input, which is named -"
         case "numpy":
             return "or use --backend numpy"
     assert_never(remedy.kind)

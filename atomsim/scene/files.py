@@ -6,6 +6,7 @@ import codecs
 import os
 import re
 from pathlib import Path
+from typing import BinaryIO
 
 from atomsim.errors import Mark, Problem, Remedy, SceneError
 from atomsim.scene.mistakes.wording import printable, shown, suggestion
@@ -30,7 +31,24 @@ def read_scene_file(name: str) -> Node:
         SceneError: a file that cannot be read or is no strict YAML mapping; an `extends` that leads outside the folder
             of the first file, in a circle or through more than 16 files.
     """
-    return _read_chain(name, os.path.realpath(Path(name).parent), [])
+    return _read_chain(_read_text(name), name, os.path.realpath(Path(name).parent), [])
+
+
+def read_scene_stream(stream: BinaryIO, name: str) -> Node:
+    """Read a scene from a stream and lay it over the files it extends, which lie in the current folder.
+
+    Args:
+        stream: the scene as bytes.
+        name: what to call it in messages.
+
+    Raises:
+        SceneError: as `read_scene_file` does.
+    """
+    try:
+        data = stream.read(MAX_CHARACTERS + 1)
+    except OSError as error:
+        raise _unreadable(name, f"the scene cannot be read ({error.strerror})") from None
+    return _read_chain(_decoded(data, name), name, os.path.realpath("."), [])
 
 
 def read_scene_text(text: str, name: str) -> Node:
@@ -50,9 +68,9 @@ def read_scene_text(text: str, name: str) -> Node:
     return root
 
 
-def _read_chain(name: str, folder: str, chain: list[str]) -> Node:
-    """Read a file and what it extends; `chain` names the files that led here."""
-    root = _mapping(_read_text(name), name)
+def _read_chain(text: str, name: str, folder: str, chain: list[str]) -> Node:
+    """Lay a scene over what it extends; `chain` names the files that led here."""
+    root = _mapping(text, name)
     entries = dict(_entries(root))
     extends = entries.pop("extends", None)
     root = Node(dict(entries), root.mark)
@@ -60,7 +78,7 @@ def _read_chain(name: str, folder: str, chain: list[str]) -> Node:
         return root
     chain = [*chain, name]
     base = _base_name(extends, folder, chain)
-    return merge(_read_chain(base, folder, chain), root)
+    return merge(_read_chain(_read_text(base), base, folder, chain), root)
 
 
 def _base_name(extends: Node, folder: str, chain: list[str]) -> str:
@@ -105,12 +123,25 @@ def _entries(root: Node) -> dict[str, Node]:
 
 
 def _read_text(name: str) -> str:
-    """Read a file as UTF-8, never more of it than a scene may have."""
+    """Read a file, never more of it than a scene may have; nor is a pipe opened, whose writer may never come."""
+    path = Path(name)
     try:
-        with Path(name).open("rb") as file:
+        if not (path.is_file() or path.is_dir() or _is_open(path)) and path.exists():
+            raise _unreadable(name, "this is not a regular file", Remedy("standard input"))
+        with path.open("rb") as file:
             data = file.read(MAX_CHARACTERS + 1)
     except (OSError, ValueError) as error:
         raise _unreadable(name, _reason(error, name)) from None
+    return _decoded(data, name)
+
+
+def _is_open(path: Path) -> bool:
+    """Tell whether a path stands for a stream that this process was given, as `/dev/stdin` or `<(…)` of a shell."""
+    return path.parent.name == "fd" or path == Path("/dev/stdin")
+
+
+def _decoded(data: bytes, name: str) -> str:
+    """Return the text of a file, which is UTF-8."""
     if data.startswith(_HDF5):
         raise _unreadable(name, "this is a trajectory, not a scene", Remedy("show scene", Path(name)))
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, BinaryIO
 
 from pydantic import ValidationError
 
 from atomsim.errors import SceneError
-from atomsim.scene.files import read_scene_file, read_scene_text
+from atomsim.scene.files import read_scene_file, read_scene_stream, read_scene_text
 from atomsim.scene.language import Scene
 from atomsim.scene.mistakes.blanks import check_blanks
 from atomsim.scene.mistakes.mistake import Mistake, told
@@ -44,6 +44,23 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> LoadedS
     """
     name = os.fspath(path)
     return _loaded(read_scene_file(name), name, overrides)
+
+
+def load_stream(stream: BinaryIO, name: str, overrides: Iterable[str] = ()) -> LoadedScene:
+    """Load a scene from a stream such as standard input; what it `extends` is looked up in the current folder.
+
+    Args:
+        stream: the scene as bytes.
+        name: what to call it in messages.
+        overrides: settings `PATH=VALUE`, applied in order after `extends`.
+
+    Returns:
+        The scene, and its source with the resolved text.
+
+    Raises:
+        SceneError: everything that is wrong with the scene, in the order of the text.
+    """
+    return _loaded(read_scene_stream(stream, name), name, overrides)
 
 
 def loads(text: str, name: str = "<scene>", overrides: Iterable[str] = ()) -> LoadedScene:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from atomsim.disk import behind, write_whole
+from atomsim.disk import behind, check_regular, write_whole
 from atomsim.errors import InputError, Remedy
 from atomsim.scene import load
 from atomsim.scene.mistakes.wording import meant
@@ -61,7 +61,7 @@ def begin(name: str, target: Path | None = None, *, replace: bool = False) -> li
         The files written, the scene first; what was there already, to the letter, is not written again.
 
     Raises:
-        InputError: there is no such scene, or a file of that name exists.
+        InputError: there is no such scene, or a file of that name exists, or a pipe.
     """
     found = {offer.name: offer for offer in offers()}
     offer = found.get(name.removesuffix(".yaml"))
@@ -69,6 +69,8 @@ def begin(name: str, target: Path | None = None, *, replace: bool = False) -> li
         raise InputError(f"there is no scene `{name}` at hand; {meant(name, found, 'there are')}")
     target = target or Path(offer.path.name)
     texts = dict(_chain(offer.path, target))
+    for path in texts:
+        check_regular(path)
     written = {path: text for path, text in texts.items() if not _holds(path, text)}
     for path in written:
         if path.exists() and not replace:

@@ -10,6 +10,7 @@ import typer
 
 from atomsim.cli.options import Settings
 from atomsim.cli.remedies import with_remedies
+from atomsim.cli.scenes import check_streams, named_scene
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     """
 )
 def check(
-    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files.")],
+    scenes: Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files, or - for standard input.")],
     settings: Settings = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print what was found as a list in JSON, and nothing else.")
@@ -40,13 +41,13 @@ def check(
     from atomsim.compiler import compile_scene
     from atomsim.errors import SceneError
     from atomsim.findings.before.diagnose import examine
-    from atomsim.scene import load
 
+    check_streams(scenes)
     n_wrong = 0
     found: list[Finding] = []
     for path in scenes:
         try:
-            loaded = load(path, settings or ())
+            loaded = named_scene(path, settings)
             model, state = compile_scene(loaded)
         except SceneError as error:
             n_wrong += 1
@@ -56,7 +57,8 @@ def check(
         if as_json:
             found += examination.findings
             continue
-        say(f"{path}: {scene.title}" if scene.title else str(path))
+        name = loaded.source.name
+        say(f"{name}: {scene.title}" if scene.title else name)
         say("\n".join(describe_model(model, state, scene.rounds, scene.record_every)))
         for line in describe_findings(examination):
             say(line)

@@ -9,6 +9,7 @@ import typer
 
 from atomsim.cli.options import Backend, Threads
 from atomsim.cli.remedies import command, typed
+from atomsim.cli.scenes import STANDARD_INPUT
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import Command, explained
 from atomsim.errors import InputError, RunError
@@ -102,6 +103,8 @@ def _loaded(scenes: Sequence[Path]) -> list[LoadedScene]:
     """Load all scenes, so that a mistake in one is told before any is computed."""
     from atomsim.scene import load
 
+    if STANDARD_INPUT in scenes:
+        raise InputError("a golden is named after the file of its scene, and standard input has no name")
     return [load(scene) for scene in scenes]
 
 

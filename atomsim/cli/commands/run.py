@@ -10,6 +10,7 @@ import typer
 
 from atomsim.cli.options import Backend, Settings, Threads, output, whole_number
 from atomsim.cli.remedies import command, in_words
+from atomsim.cli.scenes import named_scene
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
 from atomsim.errors import InputError, Remedy
@@ -43,7 +44,8 @@ Rounds = Annotated[
 )
 def run(
     scene: Annotated[
-        Path | None, typer.Argument(metavar="SCENE", help="The scene, a YAML file.", show_default=False)
+        Path | None,
+        typer.Argument(metavar="SCENE", help="The scene, a YAML file, or - for standard input.", show_default=False),
     ] = None,
     output: Output = None,
     rounds: Rounds = None,
@@ -60,7 +62,6 @@ def run(
 ) -> None:
     from atomsim.cli.terminal.progress import Progress
     from atomsim.cli.terminal.signals import wishes_to_stop
-    from atomsim.scene import load
     from atomsim.tasks import run as record
 
     if resume is not None and (output is not None or force or compress):
@@ -70,7 +71,7 @@ def run(
     if scene is None and resume is None:
         raise InputError("name a scene to run, as in: atomsim run scenes/rods.yaml")
     started = time.monotonic()
-    loaded = None if scene is None else load(scene, settings or ())
+    loaded = None if scene is None else named_scene(scene, settings)
     target = resume or output or DEFAULT_OUTPUT
     with wishes_to_stop(_to_go_on(target)) as wish, Progress(is_shown=False if quiet else None) as progress:
 

@@ -17,13 +17,16 @@ def prepare() -> None:
     """Make printing fail on no character and hit no file.
 
     What is not a terminal gets UTF-8; a terminal gets escapes where its encoding lacks a character. A stream that was
-    closed from outside is opened on nothing, or the next file to be opened would take its place and its messages.
+    closed from outside is opened on nothing, or the next file to be opened would take its place and its messages. One
+    that another program has set not to block is set back, or it would fail whenever its reader is slow.
     """
     for fd in range(3):
         try:
             os.fstat(fd)
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+        with contextlib.suppress(OSError):
+            os.set_blocking(fd, True)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             encoding = stream.encoding if stream.isatty() else "utf-8"
