@@ -10,26 +10,22 @@ from pathlib import Path
 from typing import TypeAlias
 
 from atomsim import arguments
-from atomsim.compiler import compile_scene
-from atomsim.core.backend import Backend, choose
+from atomsim.core.backend import Backend
 from atomsim.core.diagnosis.tunnelling import SpeedWatch
 from atomsim.core.free_memory import readable_bytes
-from atomsim.core.model import Model, State
-from atomsim.core.simulate import simulate
 from atomsim.disk import behind
 from atomsim.errors import BlowUpError, InputError, Remedy, RunError
 from atomsim.findings.before.diagnose import examine
 from atomsim.scene import LoadedScene
 from atomsim.scene.difference import differences
-from atomsim.tasks.recompute import compile_inside
-from atomsim.trajectory import End, Header, Recorder, check_target, later_version, trajectory_bytes
+from atomsim.tasks.prepare import Prepared, prepare, prepare_inside
+from atomsim.trajectory import End, Header, Recorder, StoppedRun, check_target, later_version, trajectory_bytes
 
-Report: TypeAlias = Callable[[int, int], None]
-"""Called with the round reached and the round to reach, at the start and then several times a second."""
+Report: TypeAlias = Callable[[int, int], object]
+"""Called with the round reached and the round to reach, at the start and then several times a second.
 
-
-class StopWishedError(Exception):
-    """Raised by a report to end a run between two rounds; the frames so far are kept."""
+Where its answer is true the run ends there, between two rounds; the frames so far are kept.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,24 +88,24 @@ def run(
     path = arguments.path("path", path)
     rounds = scene.scene.rounds if rounds is None else arguments.whole("rounds", rounds)
     check_target(path, replace=replace)  # before anything that takes long
-    model, state = compile_scene(scene)
+    prepared = prepare(scene, rounds)
     if warn is not None:
-        for found in examine(scene, model, state).findings:
+        for found in examine(scene, prepared.model, prepared.first).findings:
             if found.level == "warning":
                 warn(str(found))
     header = Header.of(
-        model,
+        prepared.model,
         scene_text=scene.source.text,
         scene_name=scene.source.name,
         overrides=scene.source.overrides,
-        rounds=rounds,
-        record_every=scene.scene.record_every,
+        rounds=prepared.rounds,
+        record_every=prepared.record_every,
         compress=compress,
     )
     _require_disk(path, header)
-    chosen = choose(backend, threads, model, header.rounds)
-    with Recorder(path, header, replace=replace) as recorder:
-        return _record(recorder, model, state, chosen, report)
+    chosen = prepared.choose(backend, threads)
+    with Recorder.begin(path, header, replace=replace) as recorder:
+        return _record(recorder, prepared, chosen, report)
 
 
 def resume(
@@ -146,22 +142,17 @@ def resume(
         rounds = arguments.whole("rounds", rounds)
     if scene is not None:
         arguments.instance("scene", scene, LoadedScene, arguments.LOADED_SCENE)
-    compiled: list[tuple[Model, State]] = []
-    chosen: list[Backend] = []
-
-    def accept(header: Header) -> None:
-        inside, model, first = compile_inside(header, path)
+    with StoppedRun(path, rounds) as stopped:
+        header = stopped.header
+        prepared = prepare_inside(header, path, header.rounds)
         if warn is not None and header.versions.is_later:
             warn(str(later_version(path, header.versions)))
         if scene is not None:
-            _require_same(inside, scene, path)
+            _require_same(prepared.loaded, scene, path)
         _require_disk(path, header)
-        compiled.append((model, first))
-        chosen.append(choose(backend, threads, model, header.rounds))
-
-    with Recorder.resume(path, rounds=rounds, accept=accept) as recorder:
-        model, first = compiled[0]
-        return _record(recorder, model, first, chosen[0], report)
+        chosen = prepared.choose(backend, threads)
+        with stopped.go_on() as recorder:
+            return _record(recorder, prepared, chosen, report)
 
 
 def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
@@ -190,43 +181,31 @@ def _require_disk(path: Path, header: Header) -> None:
         )
 
 
-def _record(recorder: Recorder, model: Model, first: State, backend: Backend, report: Report | None) -> Outcome:
+def _record(recorder: Recorder, prepared: Prepared, backend: Backend, report: Report | None) -> Outcome:
     """Compute and record the frames that are due, and finish the file, however the run ends.
 
     Args:
         recorder: knows where a resumed run goes on.
-        model: the compiled scene.
-        first: where the scene begins.
+        prepared: the scene.
         backend: what computes it.
         report: hears how far the run is.
     """
-    header = recorder.header
+    rounds, state = prepared.rounds, recorder.state or prepared.first
+    first_round, digest, blow_up = state.round_index, "", None
     is_recorded = recorder.state is not None  # a resumed run begins with a frame that is there already
-    state = recorder.state or first
-    first_round = state.round_index
-    end, blow_up = End("finished"), None
-    digest = ""
-    watch = SpeedWatch(model)
-
-    def report_round(round_index: int) -> None:
-        if report is not None:
-            report(round_index, header.rounds)
-
+    watch = SpeedWatch(prepared.model)
     try:
-        for frame in simulate(
-            model, state, header.rounds, header.record_every, backend.make_stepper, report=report_round, first=first
-        ):
+        for frame in prepared.frames(backend, state, report and (lambda reached: report(reached, rounds))):
             if not is_recorded:
                 recorder.append(frame)
             is_recorded = False
             watch.see(frame)
             state, digest = frame.state, frame.digest
-    except StopWishedError:
-        if state.round_index < header.rounds:  # else a resumed run had nothing left to do but to build its file
-            end = End("interrupted")
+        # A resumed run may have had nothing left to do but to build its file.
+        end = End("finished" if state.round_index >= rounds else "interrupted")
     except BlowUpError as error:
         end, blow_up = End("blew up", str(error)), error
     recorder.finish(end)
     if blow_up is not None:
         raise BlowUpError(f"{blow_up}\n{recorder.path} keeps the frames up to round {state.round_index}")
-    return Outcome(recorder.path, header.rounds, first_round, state.round_index, digest, end, backend, watch.warning())
+    return Outcome(recorder.path, rounds, first_round, state.round_index, digest, end, backend, watch.warning())

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import os
 
-from atomsim.compiler import compile_scene
-from atomsim.core.backend import choose
 from atomsim.core.simulation import Simulation
 from atomsim.scene import LoadedScene, load
+from atomsim.tasks.prepare import prepare
 
 
 class SceneSimulation(Simulation):
@@ -31,6 +30,6 @@ class SceneSimulation(Simulation):
         self, scene: LoadedScene | str | os.PathLike[str], *, backend: str = "auto", threads: int | None = None
     ) -> None:
         self.scene = scene if isinstance(scene, LoadedScene) else load(scene)
-        model, state = compile_scene(self.scene)
-        self.backend = choose(backend, threads, model, self.scene.scene.rounds)
-        super().__init__(model, state, self.backend.make_stepper)
+        prepared = prepare(self.scene)
+        self.backend = prepared.choose(backend, threads)
+        super().__init__(prepared.model, prepared.first, self.backend.make_stepper)

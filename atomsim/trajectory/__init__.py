@@ -4,12 +4,14 @@ from atomsim.trajectory.header import End, Header, count_frames, trajectory_byte
 from atomsim.trajectory.journal.form import journal_path
 from atomsim.trajectory.reader import Frames, Trajectory, later_version
 from atomsim.trajectory.recorder import Recorder, check_target, recover
+from atomsim.trajectory.stopped import StoppedRun
 
 __all__ = [
     "End",
     "Frames",
     "Header",
     "Recorder",
+    "StoppedRun",
     "Trajectory",
     "check_target",
     "count_frames",

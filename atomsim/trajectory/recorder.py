@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import time
-from collections.abc import Callable
-from dataclasses import replace as with_changes
 from pathlib import Path
 from types import TracebackType
 
@@ -15,14 +12,13 @@ import numpy as np
 from atomsim.core.model import Frame, State
 from atomsim.disk import Stamp, behind, is_protected
 from atomsim.errors import InputError, Remedy, RunError
-from atomsim.trajectory.building import build, require_own
+from atomsim.trajectory.building import build
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.interrupts import held
-from atomsim.trajectory.journal.form import SUFFIX, journal_path
-from atomsim.trajectory.journal.read import Journal
+from atomsim.trajectory.journal.form import has_journal, journal_path, trajectory_path
 from atomsim.trajectory.journal.write import JournalWriter, TamperedError
-from atomsim.trajectory.reader import Trajectory, is_ours
+from atomsim.trajectory.reader import is_ours
 from atomsim.trajectory.rows import fill, row_dtype
 
 BLOCK_SECONDS = 1.0
@@ -37,13 +33,10 @@ class Recorder:
     A context manager. However it is left, all frames handed over are in the journal or in the finished file.
 
     Args:
-        path: the trajectory to write.
+        path: the trajectory.
         header: what it says besides its frames.
-        replace: whether an older trajectory of that name may go; it stays until the new one is finished.
-
-    Raises:
-        InputError: something is there already, or nothing can be there.
-        RunError: the folder cannot be written to, or another process writes this trajectory.
+        writer: what writes its journal, which becomes this object's own.
+        state: that of the last frame already in it, if there is one.
 
     Attributes:
         path: the trajectory.
@@ -51,66 +44,7 @@ class Recorder:
         state: where a resumed run goes on; None for the beginning of the scene.
     """
 
-    def __init__(self, path: str | os.PathLike[str], header: Header, *, replace: bool = False) -> None:
-        path = Path(path)
-        replaces = Stamp.of(path) if replace else None
-        check_target(path, replace=replace)
-        with held():
-            writer = JournalWriter.begin(journal_path(path), header, replaces)
-            try:
-                writer.publish(replace=replace)
-            except BaseException:
-                writer.discard()
-                raise
-        self._set_up(path, header, writer, None)
-
-    @classmethod
-    def resume(
-        cls,
-        path: str | os.PathLike[str],
-        *,
-        rounds: int | None = None,
-        accept: Callable[[Header], None] = lambda header: None,
-    ) -> Recorder:
-        """Go on with a run that was stopped, from its last frame, `state`.
-
-        The finished file will have the very bytes that a run without a stop would have given it. So the last frame
-        of a run whose `rounds` were no multiple of `record_every` goes if the run goes further; its state serves all
-        the same. If there is both a finished file and a journal, the journal is the newer.
-
-        Args:
-            path: the trajectory.
-            rounds: total rounds to do; as planned before by default.
-            accept: called once with the header, before any file is changed; what it raises refuses to go on.
-
-        Raises:
-            InputError: there is no such trajectory, it is damaged, blew up, or has done these rounds already.
-            RunError: it cannot be written, or another process writes it.
-        """
-        path = _trajectory_path(path)
-        has_journal = _has_journal(path)
-        if not has_journal:
-            _turn_back(path, rounds, accept)
-        writer = JournalWriter.reopen(journal_path(path))
-        try:
-            with reading(writer.path), contextlib.closing(writer.read()) as journal:
-                state = _last_state(journal)
-                header = _planned(journal.header, rounds)
-                if state is not None and state.round_index > header.rounds:
-                    raise _done_already(path, state.round_index)
-                if has_journal:
-                    require_own(path, journal)
-                    accept(header)
-                writer.settle(journal)
-            writer.go_on(header.rounds)
-        except BaseException:
-            writer.close()
-            raise
-        recorder = cls.__new__(cls)
-        recorder._set_up(path, header, writer, state)
-        return recorder
-
-    def _set_up(self, path: Path, header: Header, writer: JournalWriter, state: State | None) -> None:
+    def __init__(self, path: Path, header: Header, writer: JournalWriter, state: State | None = None) -> None:
         self.path = path
         self.header = header
         self.state = state
@@ -122,6 +56,31 @@ class Recorder:
         self._is_open = True
         # The first frame is written at once: with it, a run can be resumed.
         self._last_write = -np.inf
+
+    @classmethod
+    def begin(cls, path: str | os.PathLike[str], header: Header, *, replace: bool = False) -> Recorder:
+        """Begin a trajectory.
+
+        Args:
+            path: the trajectory to write.
+            header: what it says besides its frames.
+            replace: whether an older trajectory of that name may go; it stays until the new one is finished.
+
+        Raises:
+            InputError: something is there already, or nothing can be there.
+            RunError: the folder cannot be written to, or another process writes this trajectory.
+        """
+        path = Path(path)
+        replaces = Stamp.of(path) if replace else None
+        check_target(path, replace=replace)
+        with held():
+            writer = JournalWriter.begin(journal_path(path), header, replaces)
+            try:
+                writer.publish(replace=replace)
+            except BaseException:
+                writer.discard()
+                raise
+        return cls(path, header, writer)
 
     def __enter__(self) -> Recorder:
         return self
@@ -191,8 +150,8 @@ def recover(path: str | os.PathLike[str]) -> None:
         InputError: there is no journal, or its header is damaged.
         RunError: the file cannot be written, or the run is still going on.
     """
-    path = _trajectory_path(path)
-    if not _has_journal(path):
+    path = trajectory_path(path)
+    if not has_journal(path):
         raise InputError(f"{path}: there is no journal {journal_path(path)} to recover it from")
     writer = JournalWriter.reopen(journal_path(path))
     try:
@@ -200,19 +159,6 @@ def recover(path: str | os.PathLike[str]) -> None:
         writer.remove()
     finally:
         writer.close()
-
-
-def _trajectory_path(path: str | os.PathLike[str]) -> Path:
-    path = Path(path)
-    file = behind(path)
-    if file.suffix == SUFFIX:
-        raise InputError(f"{file}: this is the name of a journal; name its trajectory, {file.with_suffix('')}")
-    return path
-
-
-def _has_journal(path: Path) -> bool:
-    with reading(path):
-        return journal_path(path).exists()
 
 
 def check_target(path: str | os.PathLike[str], *, replace: bool) -> Path:
@@ -225,7 +171,7 @@ def check_target(path: str | os.PathLike[str], *, replace: bool) -> Path:
     Raises:
         InputError: something is there already, or nothing can be there.
     """
-    path = _trajectory_path(path)
+    path = trajectory_path(path)
     with reading(path):
         _check_free(path, replace=replace)
     return path
@@ -246,40 +192,3 @@ def _check_free(path: Path, *, replace: bool) -> None:
             raise InputError(f"{taken} exists and is no trajectory", Remedy("rename"))
         if taken.exists() and not replace:
             raise InputError(f"{taken} exists", Remedy("replace"), Remedy("go on", path))
-
-
-def _last_state(journal: Journal) -> State | None:
-    last = len(journal.series) - 1
-    return journal.state(last) if last >= 0 else None
-
-
-def _planned(header: Header, rounds: int | None) -> Header:
-    return header if rounds is None else with_changes(header, rounds=rounds)
-
-
-def _turn_back(path: Path, rounds: int | None, accept: Callable[[Header], None]) -> None:
-    """Write a finished file back into a journal, complete before it appears; the file itself stays as it is."""
-    replaces = Stamp.of(path)
-    with Trajectory(path) as trajectory:
-        last_round = int(trajectory.rounds[-1])
-        header = _planned(trajectory.header, rounds)
-        if trajectory.end.kind == "blew up":
-            raise InputError(f"{path}: blew up after round {last_round} and would again; change its scene and run that")
-        if last_round >= header.rounds:
-            raise _done_already(path, last_round)
-        accept(header)
-        writer = JournalWriter.begin(journal_path(path), trajectory.header, replaces)
-        try:
-            row = np.empty(1, row_dtype(trajectory.header.n_atoms, trajectory.header.memory))
-            for frame in trajectory:
-                fill(row[0], frame)
-                writer.frames(row)
-            writer.publish(replace=False)
-        except BaseException:
-            writer.discard()
-            raise
-        writer.close()
-
-
-def _done_already(path: Path, last_round: int) -> InputError:
-    return InputError(f"{path}: has done {last_round} rounds already", Remedy("more rounds"))

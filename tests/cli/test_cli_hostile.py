@@ -51,7 +51,7 @@ def record(path: Path, scene: str = SCENE, *, finish: bool = True, **changes: An
     loaded = loads(SCENE)
     model, state = compile_scene(loaded)
     header = Header.of(model, scene_text=scene, scene_name="s.yaml", rounds=30, record_every=10)
-    with Recorder(path, replace(header, **changes)) as recorder:
+    with Recorder.begin(path, replace(header, **changes)) as recorder:
         for frame in simulate(model, state, 30, 10):
             recorder.append(frame)
         if finish:
@@ -192,7 +192,7 @@ def test_a_frame_with_a_forged_digest_is_found_by_computing_it_again(cli):
     digest = state_digest(forged, frames[2].velocity)
     frames[2] = replace(frames[2], state=replace(frames[2].state, position=forged), digest=digest)
     Path("out.h5").unlink()
-    with Recorder("out.h5", header) as recorder:
+    with Recorder.begin("out.h5", header) as recorder:
         for frame in frames:
             recorder.append(frame)
         recorder.finish(End("finished"))
@@ -215,7 +215,7 @@ def test_frames_left_out_or_put_in_are_found(cli, rounds, first):
     loaded = loads(SCENE)
     model, state = compile_scene(loaded)
     header = Header.of(model, scene_text=SCENE, scene_name="s.yaml", rounds=30, record_every=10)
-    with Recorder("out.h5", header) as recorder:
+    with Recorder.begin("out.h5", header) as recorder:
         for frame in simulate(model, state, 30, 5):
             if frame.round_index in rounds:
                 recorder.append(frame)

@@ -189,7 +189,7 @@ def test_titles_do_not_command_the_terminal(cli):
     model, state = compile_scene(inside)
     model = replace(model, title="\x1b[31mred\x07 alert")
     header = Header.of(model, scene_text=inside.source.text, scene_name="\x9b2Jrods", rounds=10, record_every=10)
-    with Recorder("out.h5", header) as recorder:
+    with Recorder.begin("out.h5", header) as recorder:
         for frame in simulate(model, state, 10, 10):
             recorder.append(frame)
         recorder.finish(End("finished"))

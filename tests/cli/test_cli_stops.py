@@ -173,13 +173,12 @@ def test_a_blown_up_run_is_not_gone_on_with(cli):
 
 def test_a_run_killed_before_its_first_frame_begins_anew(cli, monkeypatch):
     """Its journal says what is to be run, and no more; every command says so."""
-    from atomsim.tasks import run as record
 
     def killed(*_, **__):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(record, "simulate", killed)
+        patch.setattr("atomsim.tasks.prepare.simulate", killed)
         assert cli("run", "scenes/rods.yaml", "--rounds", "20").code == 130
     message = "out.h5.part: holds no frame yet; to run it: atomsim run --resume out.h5\n"
     for arguments in (("show", "out.h5"), ("render", "out.h5"), ("verify", "out.h5"), ("compare", "out.h5", "out.h5")):

@@ -14,7 +14,7 @@ from atomsim.compiler import compile_scene
 from atomsim.core.simulate import simulate
 from atomsim.errors import InputError, RunError, SceneError
 from atomsim.scene import load
-from atomsim.tasks.run import StopWishedError, resume, run
+from atomsim.tasks.run import resume, run
 from atomsim.trajectory import End, Header, Recorder
 from atomsim.trajectory.header import Versions
 
@@ -23,8 +23,8 @@ class Killed(BaseException):
     """Stands for a signal that no handler sees."""
 
 
-def stop_at_once(round_index: int, rounds: int) -> None:
-    raise StopWishedError
+def stop_at_once(round_index: int, rounds: int) -> bool:
+    return True
 
 
 def be_killed(recorder: Recorder, end: End) -> None:
@@ -90,7 +90,7 @@ def written_by(version: str, path: Path, **changes: str) -> Path:
         record_every=scene.scene.record_every,
     )
     header = replace(header, versions=replace(Versions.here(), program=version))
-    with Recorder(path, header) as recorder:
+    with Recorder.begin(path, header) as recorder:
         for frame in simulate(model, state, 20, scene.scene.record_every):
             recorder.append(frame)
         recorder.finish(End("finished"))

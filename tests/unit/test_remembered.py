@@ -21,7 +21,7 @@ from atomsim.core.simulate import simulate
 from atomsim.errors import InputError
 from atomsim.tasks.compare import first_difference
 from atomsim.tasks.golden import check_golden, record_golden
-from atomsim.trajectory import End, Header, Recorder, Trajectory, journal_path
+from atomsim.trajectory import End, Header, Recorder, StoppedRun, Trajectory, journal_path
 from atomsim.trajectory.rows import row_dtype
 
 PHASE, RANDOM, BROKEN = (array.name for array in LAYOUT)
@@ -41,7 +41,7 @@ def header(rounds: int = ROUNDS, *, compress: bool = False) -> Header:
 
 def recorded(path: Path, run: Header, *, stop_after: int | None = None) -> Path:
     """Record the toy; leave a journal if it stops early."""
-    with Recorder(path, run) as recorder:
+    with Recorder.begin(path, run) as recorder:
         for frame in frames(run.rounds):
             if stop_after is None or frame.round_index <= stop_after:
                 recorder.append(frame)
@@ -129,7 +129,7 @@ def test_a_run_that_stopped_goes_on_with_what_it_remembered_to_the_same_bytes(tm
     whole = recorded(tmp_path / "whole.h5", header())
     path = recorded(tmp_path / "out.h5", header(), stop_after=5)
     assert journal_path(path).exists()
-    with Recorder.resume(path) as recorder:
+    with StoppedRun(path) as stopped, stopped.go_on() as recorder:
         assert recorder.state is not None
         assert recorder.state.memory[RANDOM] == 2**60 + 5
         for frame in frames(state=recorder.state)[1:]:
@@ -141,7 +141,7 @@ def test_a_run_that_stopped_goes_on_with_what_it_remembered_to_the_same_bytes(tm
 def test_a_finished_run_can_be_extended(tmp_path: Path) -> None:
     whole = recorded(tmp_path / "whole.h5", header(20))
     path = recorded(tmp_path / "out.h5", header())
-    with Recorder.resume(path, rounds=20) as recorder:
+    with StoppedRun(path, 20) as stopped, stopped.go_on() as recorder:
         for frame in frames(20, recorder.state)[1:]:
             recorder.append(frame)
         recorder.finish(End("finished"))
@@ -156,7 +156,7 @@ def test_rows_have_a_constant_length_and_without_memory_that_of_the_atoms() -> N
 @pytest.mark.parametrize("memory", [EMPTY, Memory({PHASE: np.zeros(2)}), Memory({"x": np.zeros(2)})])
 def test_a_frame_that_remembers_something_else_is_no_frame_of_the_trajectory(tmp_path: Path, memory: Memory) -> None:
     first = frames()[0]
-    with Recorder(tmp_path / "out.h5", header()) as recorder:
+    with Recorder.begin(tmp_path / "out.h5", header()) as recorder:
         with pytest.raises(ValueError, match="a frame that remembers"):
             recorder.append(replace(first, state=replace(first.state, memory=memory)))
         recorder.append(first)

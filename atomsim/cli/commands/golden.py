@@ -125,9 +125,7 @@ def _paths(scenes: Sequence[Path], into: Path | None) -> list[Path]:
 
 def _computed(inside: LoadedScene, backend: str = "auto", threads: int | None = None) -> tuple[Model, Iterator[Frame]]:
     """Return a scene's model and its frames, computed as they are asked for."""
-    from atomsim.compiler import compile_scene
-    from atomsim.core.simulate import simulate
+    from atomsim.tasks.prepare import prepare
 
-    scene = inside.scene
-    model, state = compile_scene(inside)
-    return model, simulate(model, state, scene.rounds, scene.record_every, backend, threads)
+    prepared = prepare(inside)
+    return prepared.model, prepared.frames(prepared.choose(backend, threads))

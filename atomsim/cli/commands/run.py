@@ -75,10 +75,9 @@ def run(
     target = resume or output or DEFAULT_OUTPUT
     with wishes_to_stop(_to_go_on(target)) as wish, Progress(is_shown=False if quiet else None) as progress:
 
-        def report(round_index: int, last_round: int) -> None:
+        def report(round_index: int, last_round: int) -> bool:
             progress.report(round_index, last_round)
-            if wish.is_wished():
-                raise record.StopWishedError
+            return wish.is_wished()
 
         if resume is not None:
             outcome = record.resume(

@@ -29,21 +29,17 @@ def verify(
     backend: Backend = "auto",
     threads: Threads = None,
 ) -> None:
-    from atomsim.core.backend import choose
-    from atomsim.core.simulate import simulate
     from atomsim.tasks.compare import first_difference
-    from atomsim.tasks.recompute import compile_inside
+    from atomsim.tasks.prepare import prepare_inside
     from atomsim.trajectory import Trajectory
 
     with Trajectory(trajectory) as recorded:
         for notice in recorded.notices():
             tell(with_remedies(notice))
-        header = recorded.header
-        _, model, state = compile_inside(header, trajectory)
         last_round = int(recorded.rounds[-1])
-        make_stepper = choose(backend, threads, model, last_round).make_stepper
-        computed = simulate(model, state, last_round, header.record_every, make_stepper)
-        difference = first_difference(recorded, computed, header.groups)
+        prepared = prepare_inside(recorded.header, trajectory, last_round)
+        computed = prepared.frames(prepared.choose(backend, threads))
+        difference = first_difference(recorded, computed, recorded.header.groups)
         if difference is not None:
             say(f"different: {difference} (first: the file; second: computed now)")
             raise typer.Exit(1)

@@ -17,12 +17,14 @@ form, not how a journal is written, read or built into the finished file.
 
 from __future__ import annotations
 
+import os
 import struct
 import zlib
 from pathlib import Path
 
 from atomsim.disk import behind, beside
 from atomsim.errors import InputError
+from atomsim.trajectory.guard import reading
 
 HEAD, BONDS, FRAMES, END, GO_ON = b"atom.hea", b"atom.bon", b"atom.fra", b"atom.end", b"atom.goo"
 REPLACES = b"atom.rep"
@@ -45,6 +47,29 @@ def journal_path(path: Path) -> Path:
     if not path.name:
         raise InputError(f"{path}: this is a folder, not a trajectory")
     return beside(behind(path), SUFFIX)
+
+
+def trajectory_path(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a trajectory, having made sure that it is not that of a journal.
+
+    Raises:
+        InputError: it is.
+    """
+    path = Path(path)
+    file = behind(path)
+    if file.suffix == SUFFIX:
+        raise InputError(f"{file}: this is the name of a journal; name its trajectory, {file.with_suffix('')}")
+    return path
+
+
+def has_journal(path: Path) -> bool:
+    """Return whether there is a journal of a trajectory.
+
+    Raises:
+        InputError: the file system does not tell.
+    """
+    with reading(path):
+        return journal_path(path).exists()
 
 
 def checksum_start(kind: bytes, length: int) -> int:

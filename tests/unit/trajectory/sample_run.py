@@ -9,7 +9,7 @@ import numpy as np
 
 from atomsim.core.digest import state_digest
 from atomsim.core.model import BondTable, Frame, GroupSpan, Model, Observables, Origin, State
-from atomsim.trajectory import End, Header, Recorder, Trajectory, journal_path
+from atomsim.trajectory import End, Header, Recorder, StoppedRun, Trajectory, journal_path
 
 TIME_STEP = 0.1
 SCENE = "atomsim: 1\ntitle: Two rods · τ\n\n"
@@ -60,16 +60,22 @@ def go_on(recorder: Recorder, *, stop_after: int | None = None, finish: bool = T
         recorder.finish(End("finished"))
 
 
+def resume(path: Path, *, rounds: int | None = None) -> Recorder:
+    """Go on with a run that was stopped, without a look at it before."""
+    with StoppedRun(path, rounds) as stopped:
+        return stopped.go_on()
+
+
 def record(path: Path, run: Header, *, replace: bool = False) -> Path:
     """Record a whole run."""
-    with Recorder(path, run, replace=replace) as recorder:
+    with Recorder.begin(path, run, replace=replace) as recorder:
         go_on(recorder)
     return path
 
 
 def killed(path: Path, run: Header, stop_after: int) -> Path:
     """Leave the journal of a run that was stopped."""
-    with Recorder(path, run) as recorder:
+    with Recorder.begin(path, run) as recorder:
         go_on(recorder, stop_after=stop_after, finish=False)
     return journal_path(path)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sample_run import digest_of, frame, go_on, header, holds, killed, record
+from sample_run import digest_of, frame, go_on, header, holds, killed, record, resume
 from support.process import finish, python
 
 from atomsim.errors import AtomsimError, InputError, Remedy, RunError
@@ -53,7 +53,7 @@ def run_in_trouble(path: Path, passing: int, *, for_good: bool) -> tuple[int, li
         patch.setattr(recorder, "BLOCK_SECONDS", 0.0)
         trouble = Trouble(patch, passing, for_good=for_good)
         try:
-            with Recorder(path, header(40)) as recording:
+            with Recorder.begin(path, header(40)) as recording:
                 for round_index in range(0, 41, 10):
                     recording.append(frame(round_index))
                     appended.append(round_index)
@@ -80,9 +80,9 @@ def test_an_error_at_any_call_loses_nothing(tmp_path: Path, for_good: bool) -> N
             _check_what_is_left(path, appended, error)
         assert {left.name for left in folder.iterdir()} <= {"out.h5", "out.h5.part"}
         with (
-            Recorder.resume(path)
+            resume(path)
             if list(folder.iterdir()) and error
-            else Recorder(path, header(40), replace=True) as recording
+            else Recorder.begin(path, header(40), replace=True) as recording
         ):
             go_on(recording)
         assert digest_of(path) == whole
@@ -102,7 +102,7 @@ def _check_what_is_left(path: Path, appended: list[int], error: AtomsimError) ->
 
 def test_the_message_of_a_full_disk_while_running(tmp_path: Path) -> None:
     path = tmp_path / "out.h5"
-    with pytest.MonkeyPatch.context() as patch, Recorder(path, header(40)) as recording:
+    with pytest.MonkeyPatch.context() as patch, Recorder.begin(path, header(40)) as recording:
         recording.append(frame(0))
         recording.append(frame(10))
         Trouble(patch, 0, for_good=True)
@@ -119,7 +119,7 @@ def test_the_message_of_a_full_disk_while_running(tmp_path: Path) -> None:
 
 def test_the_message_of_a_full_disk_while_building(tmp_path: Path) -> None:
     path = tmp_path / "out.h5"
-    with pytest.MonkeyPatch.context() as patch, Recorder(path, header(40)) as recording:
+    with pytest.MonkeyPatch.context() as patch, Recorder.begin(path, header(40)) as recording:
         go_on(recording, finish=False)
         calls_until_built = 4  # the last block (prefix and rows) and the end (prefix and text)
         Trouble(patch, calls_until_built + 10, for_good=True)
@@ -136,7 +136,7 @@ def test_the_message_of_a_full_disk_while_building(tmp_path: Path) -> None:
 def test_a_folder_that_vanishes(tmp_path: Path) -> None:
     folder = tmp_path / "folder"
     folder.mkdir()
-    with Recorder(folder / "out.h5", header(40)) as recording:
+    with Recorder.begin(folder / "out.h5", header(40)) as recording:
         go_on(recording, stop_after=20, finish=False)
         shutil.rmtree(folder)
         with pytest.raises(RunError) as caught:
@@ -148,7 +148,7 @@ def test_a_folder_that_vanishes(tmp_path: Path) -> None:
 
 def test_a_journal_that_someone_removed_is_built_all_the_same(tmp_path: Path) -> None:
     path = tmp_path / "out.h5"
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, finish=False)
         journal_path(path).unlink()
         recording.finish(End("finished"))
@@ -161,7 +161,7 @@ def test_a_folder_that_cannot_be_written_to(tmp_path: Path) -> None:
     folder = tmp_path / "folder"
     folder.mkdir(mode=0o500)
     with pytest.raises(RunError) as caught:
-        Recorder(folder / "out.h5", header())
+        Recorder.begin(folder / "out.h5", header())
     assert str(caught.value) == f"{folder / 'out.h5.part'}: cannot be written: Permission denied"
 
 
@@ -172,7 +172,7 @@ def test_a_folder_that_may_not_be_looked_into(tmp_path: Path, monkeypatch: pytes
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
     monkeypatch.setattr(Path, "stat", refuse)
-    for act in (Trajectory, Recorder.resume, recover, lambda name: Recorder(name, header())):
+    for act in (Trajectory, resume, recover, lambda name: Recorder.begin(name, header())):
         with pytest.raises(InputError) as caught:
             act(path)
         assert str(caught.value) == f"{path}: Permission denied"
@@ -227,7 +227,7 @@ def test_a_journal_that_goes_away_before_it_is_locked(
 
     monkeypatch.setattr(fcntl, "flock", lock_late)
     with pytest.raises(RunError) as caught:
-        Recorder.resume(path)
+        resume(path)
     assert str(caught.value) == f"{journal}: another atomsim is writing it; wait for that to end"
     assert (journal.read_bytes() if journal.exists() else None) == successor
 
@@ -241,7 +241,7 @@ def test_a_real_limit_on_the_size_of_files(tmp_path: Path, limit: int) -> None:
     assert "File too large" in done.stderr
     assert done.stderr.count("\n") == 1
     if journal_path(path).exists():
-        with Recorder.resume(path) as recording:
+        with resume(path) as recording:
             go_on(recording)
     else:
         record(path, header(400))

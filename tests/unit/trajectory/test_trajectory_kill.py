@@ -7,10 +7,10 @@ import json
 import os
 from pathlib import Path
 
-from sample_run import digest_of, go_on, header, holds, record
+from sample_run import digest_of, go_on, header, holds, record, resume
 from support.process import finish, python
 
-from atomsim.trajectory import Recorder, Trajectory, journal_path, recover
+from atomsim.trajectory import Trajectory, journal_path, recover
 from atomsim.trajectory.journal.read import Journal
 
 N_KILLS = 400 if os.environ.get("ATOMSIM_LONG") else 12
@@ -26,7 +26,7 @@ recorder.BLOCK_SECONDS = 0.0
 folder, n_kills = Path(sys.argv[1]), int(sys.argv[2])
 
 def write(path, counter):
-    with Recorder(path, header(400)) as recording:
+    with Recorder.begin(path, header(400)) as recording:
         append = recording.append
         def counted(frame):
             append(frame)
@@ -98,5 +98,5 @@ def _go_on_after_the_kill(path: Path) -> None:
         if is_ended:
             recover(path)
         else:
-            with Recorder.resume(path) as recording:
+            with resume(path) as recording:
                 go_on(recording)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from sample_run import digest_of, go_on, header, killed, record
+from sample_run import digest_of, go_on, header, killed, record, resume
 
 from atomsim.errors import InputError
 from atomsim.trajectory import Recorder, Trajectory, journal_path, recover
@@ -50,7 +50,7 @@ def test_going_on_with_a_journal_behind_a_link(link: Path, whole: str) -> None:
     assert journal == link.parent / "scratch" / "real.h5.part"
     with Trajectory(link) as seen:
         assert seen.from_journal
-    with Recorder.resume(link) as recording:
+    with resume(link) as recording:
         go_on(recording)
     assert is_kept(link)
     assert digest_of(link) == whole
@@ -58,7 +58,7 @@ def test_going_on_with_a_journal_behind_a_link(link: Path, whole: str) -> None:
 
 def test_going_on_with_a_finished_file_behind_a_link(link: Path, whole: str) -> None:
     record(link, header(20))
-    with Recorder.resume(link, rounds=40) as recording:
+    with resume(link, rounds=40) as recording:
         go_on(recording)
     assert is_kept(link)
     assert digest_of(link) == whole
@@ -78,19 +78,19 @@ def test_two_names_of_one_file_share_its_lock_and_its_journal(link: Path) -> Non
 def test_a_link_into_a_folder_that_is_not_there(tmp_path: Path) -> None:
     (tmp_path / "link.h5").symlink_to(tmp_path / "none" / "real.h5")
     with pytest.raises(InputError, match=rf"link\.h5: there is no folder {tmp_path}/none$"):
-        Recorder(tmp_path / "link.h5", header())
+        Recorder.begin(tmp_path / "link.h5", header())
 
 
 def test_a_link_to_a_journal_is_no_name_for_a_trajectory(tmp_path: Path) -> None:
     killed(tmp_path / "real.h5", header(40), 20)
     (tmp_path / "link.h5").symlink_to("real.h5.part")
     with pytest.raises(InputError, match=r"real\.h5\.part: this is the name of a journal"):
-        Recorder(tmp_path / "link.h5", header(), replace=True)
+        Recorder.begin(tmp_path / "link.h5", header(), replace=True)
 
 
 def test_links_in_a_circle(tmp_path: Path) -> None:
     (tmp_path / "a.h5").symlink_to("b.h5")
     (tmp_path / "b.h5").symlink_to("a.h5")
-    for use in (Trajectory, recover, Recorder.resume, lambda path: Recorder(path, header())):
+    for use in (Trajectory, recover, resume, lambda path: Recorder.begin(path, header())):
         with pytest.raises(InputError, match=r"a\.h5: its links lead in a circle$"):
             use(tmp_path / "a.h5")

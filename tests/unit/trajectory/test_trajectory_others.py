@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from sample_run import digest_of, frame, go_on, header, holds, killed, record
+from sample_run import digest_of, frame, go_on, header, holds, killed, record, resume
 
 from atomsim.errors import InputError, Remedy, RunError
 from atomsim.trajectory import End, Recorder, Trajectory, building, journal_path, recorder, recover
@@ -59,7 +59,7 @@ def test_what_another_program_wrote_meanwhile_stays(
     """`--force` is about what was there when it was said."""
     if replace:
         record(path, header(10))
-    with Recorder(path, header(40), replace=replace) as recording:
+    with Recorder.begin(path, header(40), replace=replace) as recording:
         go_on(recording, finish=False)
         write(path)
         theirs = digest_of(path)
@@ -67,7 +67,7 @@ def test_what_another_program_wrote_meanwhile_stays(
             recording.finish(End("finished"))
     assert str(caught.value) == refusal(path)
     assert digest_of(path) == theirs
-    for go_on_with in (recover, Recorder.resume):
+    for go_on_with in (recover, resume):
         with pytest.raises(RunError) as caught:
             go_on_with(path)
         assert str(caught.value) == refusal(path)
@@ -80,7 +80,7 @@ def test_what_another_program_wrote_meanwhile_stays(
 
 def test_what_comes_in_the_last_moment_stays_too(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Between looking whether the name is free and taking it."""
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, finish=False)
         monkeypatch.setattr(building, "require_own", lambda path, _: path.write_text("precious"))
         monkeypatch.setattr(Path, "exists", lambda _: False)
@@ -92,7 +92,7 @@ def test_what_comes_in_the_last_moment_stays_too(path: Path, monkeypatch: pytest
 
 def test_what_was_changed_while_its_run_goes_on_stays(path: Path) -> None:
     record(path, header(20))
-    with Recorder.resume(path, rounds=40) as recording:
+    with resume(path, rounds=40) as recording:
         go_on(recording, finish=False)
         os.utime(path, ns=(0, 0))
         with pytest.raises(RunError) as caught:
@@ -102,17 +102,17 @@ def test_what_was_changed_while_its_run_goes_on_stays(path: Path) -> None:
 
 def test_the_right_to_replace_a_file_outlives_a_kill(path: Path, whole: str) -> None:
     record(path, header(10))
-    with Recorder(path, header(40), replace=True) as recording:
+    with Recorder.begin(path, header(40), replace=True) as recording:
         go_on(recording, stop_after=20, finish=False)
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         go_on(recording, stop_after=30, finish=False)
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         go_on(recording)
     assert digest_of(path) == whole
 
 
 def test_a_kill_between_naming_the_file_and_removing_the_journal(path: Path, whole: str) -> None:
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, finish=False)
         journal = journal_path(path)
         saved = journal.with_name("saved")
@@ -138,7 +138,7 @@ def test_a_kill_while_a_file_has_two_names_costs_neither(path: Path, whole: str)
     os.link(journal, journal.with_name("out.h5.part.tmp"))
     second = path.with_name("second.part")
     os.link(journal, second)
-    with Recorder(path, header(40), replace=True):
+    with Recorder.begin(path, header(40), replace=True):
         pass
     assert digest_of(second) == before
 
@@ -147,14 +147,14 @@ def test_a_kill_while_a_file_has_two_names_costs_neither(path: Path, whole: str)
 
 
 def test_a_journal_that_is_removed_is_put_back(path: Path, whole: str) -> None:
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, stop_after=20, finish=False)
         journal_path(path).unlink()
         recording.append(frame(30))
         with Trajectory(path) as seen:
             assert holds(seen, [0, 10, 20, 30])
         with pytest.raises(RunError, match="another atomsim is writing it"):
-            Recorder.resume(path)
+            resume(path)
         recording.append(frame(40))
         recording.finish(End("finished"))
     assert digest_of(path) == whole
@@ -163,11 +163,11 @@ def test_a_journal_that_is_removed_is_put_back(path: Path, whole: str) -> None:
 
 def test_a_journal_that_was_moved_is_written_where_it_is(path: Path, whole: str) -> None:
     moved = path.with_name("moved.h5.part")
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, stop_after=20, finish=False)
         journal_path(path).rename(moved)
         recording.append(frame(30))
-    with Recorder.resume(path.with_name("moved.h5")) as recording:
+    with resume(path.with_name("moved.h5")) as recording:
         go_on(recording)
     assert digest_of(path.with_name("moved.h5")) == whole
 
@@ -175,7 +175,7 @@ def test_a_journal_that_was_moved_is_written_where_it_is(path: Path, whole: str)
 def test_a_journal_whose_name_was_taken_gets_another(path: Path, whole: str) -> None:
     journal = journal_path(path)
     record(path.with_name("out-2.h5"), header(10))
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, stop_after=20, finish=False)
         journal.unlink()
         journal.write_text("precious")
@@ -187,14 +187,14 @@ def test_a_journal_whose_name_was_taken_gets_another(path: Path, whole: str) -> 
     )
     assert caught.value.remedies == (Remedy("go on", other),)
     assert journal.read_text() == "precious"
-    with Recorder.resume(other) as recording:
+    with resume(other) as recording:
         go_on(recording)
     assert digest_of(other) == whole
 
 
 def test_a_file_that_took_the_name_of_a_journal_is_not_removed_with_it(path: Path, whole: str) -> None:
     journal = journal_path(path)
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, finish=False)
         journal.rename(path.with_name("moved"))
         journal.write_text("precious")
@@ -210,7 +210,7 @@ def test_a_journal_that_is_shortened_keeps_what_is_left_and_the_newest_frames(
     path: Path, lost: int | None, kept: list[int]
 ) -> None:
     journal = journal_path(path)
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, stop_after=20, finish=False)
         os.truncate(journal, 0 if lost is None else journal.stat().st_size - lost)
         with pytest.raises(RunError) as caught:
@@ -221,7 +221,7 @@ def test_a_journal_that_is_shortened_keeps_what_is_left_and_the_newest_frames(
         "and the newest frames are in it"
     )
     assert caught.value.remedies == (Remedy("go on", path),)
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         go_on(recording)
     with Trajectory(path) as trajectory:
         assert holds(trajectory, [*kept, 30, 40])
@@ -229,7 +229,7 @@ def test_a_journal_that_is_shortened_keeps_what_is_left_and_the_newest_frames(
 
 def test_a_shortened_journal_still_knows_what_it_may_replace(path: Path) -> None:
     record(path, header(10))
-    with Recorder(path, header(40), replace=True) as recording:
+    with Recorder.begin(path, header(40), replace=True) as recording:
         go_on(recording, stop_after=20, finish=False)
         os.truncate(journal_path(path), 0)
         with pytest.raises(RunError):
@@ -242,7 +242,7 @@ def test_a_shortened_journal_still_knows_what_it_may_replace(path: Path) -> None
 def test_a_journal_that_is_overwritten_is_not_taken_for_a_whole_one(path: Path, whole: str) -> None:
     """Nothing is built from it, nothing removed; going on computes what is lost again."""
     journal = journal_path(path)
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, finish=False)
         with journal.open("r+b") as file:
             file.seek(-2 * FRAME, os.SEEK_END)
@@ -254,7 +254,7 @@ def test_a_journal_that_is_overwritten_is_not_taken_for_a_whole_one(path: Path, 
     )
     assert caught.value.remedies == (Remedy("go on", path),)
     assert list(path.parent.iterdir()) == [journal]
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         go_on(recording)
     assert digest_of(path) == whole
 
@@ -264,7 +264,7 @@ def test_records_that_only_a_later_version_understands_are_not_cut_off(path: Pat
     with journal.open("ab") as file:
         file.write(PREFIX.pack(b"atom.new", 0, checksum_start(b"atom.new", 0)))
     before = digest_of(journal)
-    for act in (recover, Recorder.resume):
+    for act in (recover, resume):
         with pytest.raises(InputError) as caught:
             act(path)
         assert str(caught.value) == f"{journal}: written by a later atomsim, which is needed to go on with it"

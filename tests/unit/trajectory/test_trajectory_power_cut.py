@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sample_run import go_on, header, killed, record
+from sample_run import go_on, header, killed, record, resume
 
-from atomsim.trajectory import Recorder, recover
+from atomsim.trajectory import recover
 
 
 class Diary:
@@ -84,7 +84,7 @@ def test_a_finished_run_that_goes_on(tmp_path: Path, diary: Diary) -> None:
     """The journal counts as the newer one as soon as it has its name, so it holds all frames by then."""
     path = record(tmp_path / "out.h5", header(20))
     diary.entries.clear()
-    with Recorder.resume(path, rounds=40) as recording:
+    with resume(path, rounds=40) as recording:
         assert diary.entries == BEGUN
         go_on(recording)
     assert diary.entries == BEGUN + ENDED + BUILT + REPLACED

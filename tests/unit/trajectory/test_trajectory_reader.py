@@ -113,7 +113,7 @@ def test_the_journal_can_be_named_itself(tmp_path: Path) -> None:
 
 def test_a_run_can_be_read_while_it_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "out.h5"
-    with Recorder(path, header()) as recorder:
+    with Recorder.begin(path, header()) as recorder:
         recorder.append(frame(0))
         with Trajectory(path) as trajectory:
             recorder.append(frame(10))
@@ -127,7 +127,7 @@ def test_numbers_that_are_not_finite_are_for_runs_that_blew_up(tmp_path: Path, v
     bad.velocity[3, 1] = value
     bad = replace(bad, digest=_digest(bad))
     for end in (End("blew up", "atom 3 is gone"), End("finished")):
-        with Recorder(path, header(), replace=True) as recorder:
+        with Recorder.begin(path, header(), replace=True) as recorder:
             recorder.append(frame(0))
             recorder.append(bad)
             recorder.finish(end)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from sample_run import digest_of, frame, go_on, header, holds, is_same_state, killed, record
+from sample_run import digest_of, frame, go_on, header, holds, is_same_state, killed, record, resume
 from support.process import finish, python
 
 from atomsim.errors import InputError, Remedy, RunError
-from atomsim.trajectory import End, Recorder, Trajectory, journal_path, recorder, recover
+from atomsim.trajectory import End, Recorder, StoppedRun, Trajectory, journal_path, recorder, recover
 from atomsim.trajectory.journal.form import FRAMES, PREFIX
 
 
@@ -59,7 +59,7 @@ def test_many_chunks_of_a_large_scene(tmp_path: Path, compress: bool) -> None:
 
 def test_frames_may_change_after_they_are_recorded(tmp_path: Path) -> None:
     one = frame(0)
-    with Recorder(tmp_path / "out.h5", header(0)) as recording:
+    with Recorder.begin(tmp_path / "out.h5", header(0)) as recording:
         recording.append(one)
         one.position[:] = np.nan
         recording.finish(End("finished"))
@@ -68,7 +68,7 @@ def test_frames_may_change_after_they_are_recorded(tmp_path: Path) -> None:
 
 
 def test_a_recorder_refuses_rounds_that_go_back_and_other_numbers_of_atoms(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "out.h5", header()) as recording:
+    with Recorder.begin(tmp_path / "out.h5", header()) as recording:
         recording.append(frame(10))
         with pytest.raises(ValueError, match="round 10 recorded after round 10"):
             recording.append(frame(10))
@@ -80,7 +80,7 @@ def test_an_exception_leaves_everything_recorded_in_the_journal(tmp_path: Path) 
     path = tmp_path / "out.h5"
 
     def interrupted_run() -> None:
-        with Recorder(path, header()) as recording:
+        with Recorder.begin(path, header()) as recording:
             go_on(recording, stop_after=30, finish=False)
             raise KeyboardInterrupt
 
@@ -101,7 +101,7 @@ def test_what_exists_is_not_touched_without_replace(tmp_path: Path, suffix: str)
     taken = killed(path, header(), stop_after=20) if suffix else record(path, header())
     before = digest_of(taken)
     with pytest.raises(InputError) as caught:
-        Recorder(path, header())
+        Recorder.begin(path, header())
     assert str(caught.value) == f"{taken} exists"
     assert caught.value.remedies == (Remedy("replace"), Remedy("go on", path))
     assert digest_of(taken) == before
@@ -115,7 +115,7 @@ def test_what_is_no_trajectory_is_never_replaced(tmp_path: Path, suffix: str, re
     taken = tmp_path / f"out.h5{suffix}"
     taken.write_text("precious")
     with pytest.raises(InputError) as caught:
-        Recorder(tmp_path / "out.h5", header(), replace=replace)
+        Recorder.begin(tmp_path / "out.h5", header(), replace=replace)
     assert str(caught.value) == f"{taken} exists and is no trajectory"
     assert caught.value.remedies == (Remedy("rename"),)
     assert taken.read_text() == "precious"
@@ -125,7 +125,7 @@ def test_what_is_no_trajectory_is_never_replaced(tmp_path: Path, suffix: str, re
 def test_replace_keeps_the_old_file_until_the_new_one_is_finished(tmp_path: Path) -> None:
     path = record(tmp_path / "out.h5", header(40))
     old = digest_of(path)
-    with Recorder(path, header(20), replace=True) as recording:
+    with Recorder.begin(path, header(20), replace=True) as recording:
         go_on(recording, finish=False)
         assert digest_of(path) == old
         with Trajectory(path) as trajectory:
@@ -153,14 +153,14 @@ def test_places_where_no_trajectory_can_be(tmp_path: Path) -> None:
         tmp_path / "out.part": f"this is the name of a journal; name its trajectory, {tmp_path / 'out'}",
     }.items():
         with pytest.raises(InputError) as caught:
-            Recorder(path, header(), replace=True)
+            Recorder.begin(path, header(), replace=True)
         assert str(caught.value) == f"{path}: {message}"
 
 
 def test_a_name_that_is_too_long_fails_before_the_run(tmp_path: Path) -> None:
     path = tmp_path / ("x" * 250)
     with pytest.raises(RunError) as caught:
-        Recorder(path, header())
+        Recorder.begin(path, header())
     assert str(caught.value) == f"{journal_path(path)}: cannot be written: File name too long"
     assert not list(tmp_path.iterdir())
 
@@ -169,12 +169,12 @@ def test_a_name_that_is_too_long_fails_before_the_run(tmp_path: Path) -> None:
 def test_a_second_writer_is_kept_out(tmp_path: Path, act: str) -> None:
     path = tmp_path / "out.h5"
     acts = {
-        "begin": lambda: Recorder(path, header()),
-        "replace": lambda: Recorder(path, header(), replace=True),
-        "resume": lambda: Recorder.resume(path),
+        "begin": lambda: Recorder.begin(path, header()),
+        "replace": lambda: Recorder.begin(path, header(), replace=True),
+        "resume": lambda: resume(path),
         "recover": lambda: recover(path),
     }
-    with Recorder(path, header()) as recording:
+    with Recorder.begin(path, header()) as recording:
         go_on(recording, stop_after=20, finish=False)
         with pytest.raises((RunError, InputError)) as caught:
             acts[act]()
@@ -192,10 +192,10 @@ def test_a_writer_that_begins_at_the_same_moment_loses(tmp_path: Path, monkeypat
     """Between looking whether the name is free and taking it, someone else takes it."""
     path = tmp_path / "out.h5"
     monkeypatch.setattr(recorder, "_check_free", lambda _path, *, replace: None)
-    with Recorder(path, header()) as recording:
+    with Recorder.begin(path, header()) as recording:
         recording.append(frame(0))
         with pytest.raises(RunError, match="another atomsim has just begun to write it"):
-            Recorder(path, header())
+            Recorder.begin(path, header())
     assert list(tmp_path.iterdir()) == [journal_path(path)]
 
 
@@ -207,7 +207,7 @@ def test_resuming_a_killed_run_gives_the_same_bytes(tmp_path: Path, uninterrupte
     path = tmp_path / "out.h5"
     killed(path, header(40), stop_after=stops[0])
     for stop in [*stops[1:], None]:
-        with Recorder.resume(path) as recording:
+        with resume(path) as recording:
             assert is_same_state(recording.state, frame(recording.state.round_index if recording.state else -1))
             go_on(recording, stop_after=stop, finish=stop is None)
     assert digest_of(path) == digest_of(uninterrupted)
@@ -217,7 +217,7 @@ def test_resuming_a_killed_run_gives_the_same_bytes(tmp_path: Path, uninterrupte
 @pytest.mark.parametrize("rounds", [10, 15, 39])
 def test_extending_a_finished_run_gives_the_same_bytes(tmp_path: Path, uninterrupted: Path, rounds: int) -> None:
     path = record(tmp_path / "out.h5", header(rounds))
-    with Recorder.resume(path, rounds=40) as recording:
+    with resume(path, rounds=40) as recording:
         assert is_same_state(recording.state, frame(rounds))
         go_on(recording)
     assert digest_of(path) == digest_of(uninterrupted)
@@ -226,10 +226,10 @@ def test_extending_a_finished_run_gives_the_same_bytes(tmp_path: Path, uninterru
 def test_extending_keeps_the_finished_file_until_the_longer_one_is_there(tmp_path: Path) -> None:
     path = record(tmp_path / "out.h5", header(15))
     old = digest_of(path)
-    with Recorder.resume(path, rounds=40) as recording:
+    with resume(path, rounds=40) as recording:
         go_on(recording, stop_after=30, finish=False)
     assert digest_of(path) == old
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         assert is_same_state(recording.state, frame(30))
         assert recording.header.rounds == 40
 
@@ -243,7 +243,7 @@ def test_any_number_of_stops_and_extensions_gives_the_same_bytes(
     path = tmp_path_factory.mktemp("stops") / "out.h5"
     is_begun = False
     for rounds, is_ended in [*sorted(stops.items()), (40, True)]:
-        with Recorder.resume(path, rounds=rounds) if is_begun else Recorder(path, header(rounds)) as recording:
+        with resume(path, rounds=rounds) if is_begun else Recorder.begin(path, header(rounds)) as recording:
             go_on(recording, finish=is_ended)
         is_begun = True
     assert digest_of(path) == digest_of(uninterrupted)
@@ -253,14 +253,14 @@ def test_a_frame_between_the_recorded_rounds_is_dropped_only_when_the_run_goes_o
     tmp_path: Path, uninterrupted: Path
 ) -> None:
     path = tmp_path / "out.h5"
-    with Recorder(path, header(40)) as recording:
+    with Recorder.begin(path, header(40)) as recording:
         go_on(recording, stop_after=10, finish=False)
         recording.append(frame(13))
         recording.finish(End("interrupted", "Ctrl-C"))
     with Trajectory(path) as trajectory:
         assert holds(trajectory, [0, 10, 13])
         assert trajectory.end == End("interrupted", "Ctrl-C")
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         assert is_same_state(recording.state, frame(13))
         go_on(recording)
     assert digest_of(path) == digest_of(uninterrupted)
@@ -268,13 +268,13 @@ def test_a_frame_between_the_recorded_rounds_is_dropped_only_when_the_run_goes_o
 
 def test_a_journal_without_a_frame_goes_on_from_the_beginning(tmp_path: Path, uninterrupted: Path) -> None:
     path = tmp_path / "out.h5"
-    with Recorder(path, header(40)):
+    with Recorder.begin(path, header(40)):
         pass
     with pytest.raises(RunError) as caught:
         recover(path)
     assert str(caught.value) == f"{path}: nothing to build: its journal out.h5.part holds no frame yet"
     assert caught.value.remedies == (Remedy("begin", path),)
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         assert recording.state is None
         go_on(recording)
     assert digest_of(path) == digest_of(uninterrupted)
@@ -289,7 +289,7 @@ def test_a_torn_tail_is_cut_when_the_run_goes_on(tmp_path: Path, uninterrupted: 
     with Trajectory(path) as trajectory:
         assert trajectory.lost_bytes == len(garbage)
         assert holds(trajectory, [0, 10, 20])
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         go_on(recording)
     assert digest_of(path) == digest_of(uninterrupted)
 
@@ -297,7 +297,7 @@ def test_a_torn_tail_is_cut_when_the_run_goes_on(tmp_path: Path, uninterrupted: 
 @pytest.mark.parametrize("rounds", [None, 40, 30])
 def test_a_finished_run_has_nothing_to_go_on_to(tmp_path: Path, uninterrupted: Path, rounds: int | None) -> None:
     with pytest.raises(InputError) as caught:
-        Recorder.resume(uninterrupted, rounds=rounds)
+        resume(uninterrupted, rounds=rounds)
     assert str(caught.value) == f"{uninterrupted}: has done 40 rounds already"
     assert caught.value.remedies == (Remedy("more rounds"),)
     assert list(tmp_path.iterdir()) == [uninterrupted]
@@ -307,14 +307,14 @@ def test_a_killed_run_cannot_be_made_shorter_than_it_is(tmp_path: Path) -> None:
     journal = killed(tmp_path / "out.h5", header(40), stop_after=20)
     before = digest_of(journal)
     with pytest.raises(InputError, match="has done 20 rounds already"):
-        Recorder.resume(tmp_path / "out.h5", rounds=10)
+        resume(tmp_path / "out.h5", rounds=10)
     assert digest_of(journal) == before
 
 
 def test_resuming_what_does_not_exist(tmp_path: Path) -> None:
     path = tmp_path / "out.h5"
     with pytest.raises(InputError) as caught:
-        Recorder.resume(path)
+        resume(path)
     assert str(caught.value) == f"{path}: no such file"
 
 
@@ -335,7 +335,7 @@ def test_a_recovered_run_can_be_resumed(tmp_path: Path, uninterrupted: Path) -> 
     path = tmp_path / "out.h5"
     killed(path, header(40), stop_after=20)
     recover(path)
-    with Recorder.resume(path) as recording:
+    with resume(path) as recording:
         go_on(recording)
     assert digest_of(path) == digest_of(uninterrupted)
 
@@ -349,3 +349,19 @@ def test_recovering_needs_a_journal(uninterrupted: Path) -> None:
 def test_a_run_imports_hdf5_only_at_its_end() -> None:
     code = "import sys, atomsim.trajectory; sys.exit('h5py' in sys.modules)"
     assert finish(program=python(code)).returncode == 0
+
+
+@pytest.mark.parametrize("is_finished", [False, True])
+def test_a_stopped_run_is_looked_at_before_anything_changes(tmp_path: Path, is_finished: bool) -> None:
+    path = tmp_path / "out.h5"
+    left = record(path, header(20)) if is_finished else killed(path, header(20), 20)
+    before = digest_of(left)
+    with StoppedRun(path, 40) as stopped:
+        assert (stopped.header.rounds, stopped.header.title) == (40, "Two rods · τ")
+        assert is_same_state(stopped.state, frame(20))
+        assert (digest_of(left), list(tmp_path.iterdir())) == (before, [left])
+    assert (digest_of(left), list(tmp_path.iterdir())) == (before, [left])
+    with resume(path, rounds=40) as recording:  # the lock is free
+        go_on(recording)
+    with Trajectory(path) as trajectory:
+        assert holds(trajectory, [0, 10, 20, 30, 40])
