@@ -199,6 +199,7 @@ def test_a_file_system_without_locks_or_hard_links_will_do(
 
 LIMITED = """
 import resource, sys
+sys.dont_write_bytecode = True  # cut short by the limit, it would be found by the next process
 from pathlib import Path
 from sample_run import header, record
 from atomsim.errors import RunError
