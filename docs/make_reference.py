@@ -36,6 +36,9 @@ Every key of a scene file. A scene is YAML, and data only: loading it runs nothi
 A [tutorial](tutorial.md) builds one step by step; editors complete and check scenes with the
 [JSON Schema](../atomsim/scene/scene.schema.json), which `atomsim schema` prints.
 
+JSON is YAML, too: a program may write a scene as JSON, into a file of any name, and say `"$schema"` there, which is for
+editors only.
+
 An unknown key is an error, and so is a value of the wrong type: nothing is guessed. `null` counts as not written; a key
 without a value is an error, which finds `color: #ff0000`: `#` begins a comment, so such a color needs quotes.
 Numbers may be written `1e-9`, whole ones `1e6`, and none `1,000`; booleans are `true` and `false`.

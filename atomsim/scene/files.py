@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import os
 import re
 from pathlib import Path
@@ -16,6 +15,12 @@ from atomsim.scene.yaml.tree import Node, merge
 MAX_FILES = 16
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+
+_ENCODINGS = (
+    (rb"\xff\xfe\0\0|\0\0\xfe\xff|[^\0]\0\0\0|\0\0\0[^\0]", "UTF-32"),
+    (rb"\xff\xfe|\xfe\xff|[^\0]\0|\0[^\0]", "UTF-16"),
+)
+"""How a text begins in other encodings than UTF-8: with a mark, or with zeros beside its first letter."""
 
 
 def read_scene_file(name: str) -> Node:
@@ -114,7 +119,12 @@ def _mapping(text: str, name: str) -> Node:
     if not isinstance(root.value, dict):
         message = f"a scene is a mapping of keys such as `groups:` (got {shown(root.plain())})"
         raise SceneError([Problem(root.mark, "", message)])
-    return root
+    return Node({key: node for key, node in root.value.items() if not _is_for_editors(key, node)}, root.mark)
+
+
+def _is_for_editors(key: str, node: Node) -> bool:
+    """Tell whether a key only tells an editor which schema a file of JSON has, which cannot say so in a comment."""
+    return key == "$schema" and isinstance(node.value, str)
 
 
 def _entries(root: Node) -> dict[str, Node]:
@@ -144,8 +154,9 @@ def _decoded(data: bytes, name: str) -> str:
     """Return the text of a file, which is UTF-8."""
     if data.startswith(_HDF5):
         raise _unreadable(name, "this is a trajectory, not a scene", Remedy("show scene", Path(name)))
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        raise _unreadable(name, "the file is UTF-16; save it as UTF-8")
+    encoding = next((encoding for start, encoding in _ENCODINGS if re.match(start, data, re.DOTALL)), None)
+    if encoding is not None:
+        raise _unreadable(name, f"the file is {encoding}; save it as UTF-8")
     if len(data) > MAX_CHARACTERS:
         raise _unreadable(name, "the file is larger than 16 MiB")
     try:
@@ -172,7 +183,9 @@ def _no_such_file(name: str, written: str, got: str = "") -> str:
     """Say that there is no such file, and which one may have been meant, the way it was written."""
     path = Path(name)
     try:
-        neighbours = {entry.stem: entry.name for entry in path.parent.iterdir() if entry.suffix in (".yaml", ".yml")}
+        neighbours = {
+            entry.stem: entry.name for entry in path.parent.iterdir() if entry.suffix in (".yaml", ".yml", ".json")
+        }
     except (OSError, ValueError):
         neighbours = {}
     close = suggestion(path.stem, neighbours)

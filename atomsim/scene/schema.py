@@ -12,6 +12,7 @@ from atomsim.scene.field_docs import about, default, descriptions
 from atomsim.scene.language import Declaration
 from atomsim.scene.value_schema import Schema, value_schema
 
+_SCHEMA = "Where an editor finds this schema, in a scene that is written as JSON; atomsim does not read it."
 _EXTENDS = "The scene file to lay this one over: mappings merge by key, everything else replaces, null deletes."
 
 
@@ -25,8 +26,9 @@ def schema() -> Schema:
     for definition in complete.values():
         _allow_nulls(definition)
     changes = {f"{name}Change": _as_change(definition) for name, definition in complete.items()}
-    complete["Scene"]["properties"]["extends"] = {"type": "null", "description": _EXTENDS}
-    changes["SceneChange"]["properties"]["extends"] = {"type": "string", "description": _EXTENDS}
+    for scene, extends in ((complete["Scene"], "null"), (changes["SceneChange"], "string")):
+        scene["properties"]["extends"] = {"type": extends, "description": _EXTENDS}
+        scene["properties"]["$schema"] = {"type": "string", "description": _SCHEMA}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "atomsim scene, version 1",

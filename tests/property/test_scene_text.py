@@ -27,7 +27,7 @@ forces: {weight: {kind: gravity, impulse: [0, -0.01, 0]}}
 render: {rounds: [0, 100], camera: {up: y}, colors: {ring: red}}
 """
 
-PRINTABLE = st.characters(codec="utf-8", exclude_categories=["C"])
+PRINTABLE = st.characters(codec="utf-8", exclude_categories=["C"]) | st.sampled_from("\x85\u2028\u2029\ufeff\ue000\n")
 SCALARS = st.one_of(
     st.none(),
     st.booleans(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import time
 
@@ -161,6 +162,78 @@ def test_aliases_repeat_their_anchor_at_their_own_place() -> None:
 
 def test_an_anchor_may_be_set_again() -> None:
     assert read("[&a 1, *a, &a 2, *a]").plain() == [1, 1, 2, 2]
+
+
+@pytest.fixture(params=[yaml.SafeLoader, getattr(yaml, "CSafeLoader", yaml.SafeLoader)], ids=["python", "c"])
+def any_parser(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read with PyYAML's parser in Python, and with libyaml."""
+    monkeypatch.setattr(strict_yaml, "_PARSER", request.param)
+
+
+VALUES = {
+    "title": 'a robot \U0001f916 / \\ " \t \n \u2028 \u2029 \x85 \ufeff \xa0 é',
+    "two": ["\U0001f916\U0001f916", "\\ud83e\\udd16", 1e-300, -0.5, 12, True, None],
+    "three": {"": {}, "\U0001f916": []},
+}
+
+
+@pytest.mark.parametrize("is_ascii", [True, False])
+@pytest.mark.parametrize("indent", [None, 2, "\t"])
+@pytest.mark.parametrize("separators", [(",", ":"), (", ", ": ")])
+def test_json_means_what_it_says(
+    is_ascii: bool, indent: int | str | None, separators: tuple[str, str], any_parser: None
+) -> None:
+    text = json.dumps(VALUES, ensure_ascii=is_ascii, indent=indent, separators=separators)
+    assert read(text).plain() == VALUES
+    assert read(text.replace("\n", "\r\n")).plain() == VALUES
+
+
+def test_places_in_json_are_those_of_its_text(any_parser: None) -> None:
+    text = '{"a": "\\ud83e\\udd16",\t"b": "\\\\ud83e", "c": "\u2028", "d": 1}'
+    places = Places(read(text))
+    assert [places[(key,)].column - 1 for key in "abcd"] == [text.index(f'"{key}"') for key in "abcd"]
+
+
+@pytest.mark.parametrize("sign", ["\x85", "\u2028", "\u2029"])
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a: 1 # x@y\nb: 2", {"a": 1, "b": 2}),
+        ("# x@y: [\na: 1", {"a": 1}),
+        ("a: x@y", {"a": "x@y"}),
+        ("a: 'x@y'", {"a": "x@y"}),
+        ('a: "x@y"', {"a": "x@y"}),
+        ("a: |\n  x@y\n  z\n", {"a": "x@y\nz\n"}),
+        ("x@y: 1", {"x@y": 1}),
+        ("[a@, '@']", ["a@", "@"]),
+    ],
+)
+def test_what_ended_a_line_long_ago_is_a_character(sign: str, text: str, value: object, any_parser: None) -> None:
+    expected = json.loads(json.dumps(value).replace("@", json.dumps(sign)[1:-1]))
+    assert read(text.replace("@", sign)).plain() == expected
+    assert read("\ue000: 1\n\ue001: " + sign).plain() == {"\ue000": 1, "\ue001": sign}
+    assert refusal(f"a: {sign}\nb: @x") == 't:2:4: a value cannot begin with "@"; put it in quotes'
+
+
+def test_byte_order_marks_in_front_are_left_out(any_parser: None) -> None:
+    assert read("\ufeffa: 1").plain() == {"a": 1}
+    assert read("\ufeff\ufeff{a: 1}").plain() == {"a": 1}
+    assert read("a: \ufeff").plain() == {"a": "\ufeff"}
+
+
+@pytest.mark.parametrize(
+    "text", ['a: "x\\ud83e\\udd16"', 'a: "\\ud83e"', '{"a": "\\ud83e"}', '{"a": "\\udd16\\ud83e"}']
+)
+def test_half_a_character_is_refused_in_words(text: str, any_parser: None) -> None:
+    assert "is only half of a character; write the character itself" in refusal(text)
+
+
+@pytest.mark.parametrize("begin", ["{b: 1, ", "- 1\n- ", "a: 1\n", "a:\n  b: 1\n  "])
+@pytest.mark.parametrize("quote", ["", "'", '"'])
+def test_a_key_that_is_too_long_is_called_so(begin: str, quote: str, any_parser: None) -> None:
+    assert refusal(f"{begin}{quote}{'a' * 100_000}{quote}: 1\n").endswith(
+        "the name or key that ends here is too long: more than 1,024 characters"
+    )
 
 
 def test_an_unprintable_character_is_refused_at_its_place() -> None:

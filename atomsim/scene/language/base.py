@@ -96,12 +96,17 @@ Axis = Annotated[
 """A direction: x, y, z or three numbers, of any length but zero."""
 
 
+LONGEST_NAME = 100
+"""More letters than any file, table or picture would show."""
+
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_-]*$"
 
 
 def _check_name(value: str) -> str:
     if not re.fullmatch(NAME_PATTERN, value):
         raise PydanticCustomError("name", "a name has letters, digits, _ and -, and does not begin with a digit or -")
+    if len(value) > LONGEST_NAME:
+        raise PydanticCustomError("name", "a name has at most {most} letters", {"most": LONGEST_NAME})
     if value == "all":
         raise PydanticCustomError("name", "`all` already means every atom; choose another name")
     return value

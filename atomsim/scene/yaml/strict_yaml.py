@@ -13,8 +13,9 @@ from atomsim.scene.mistakes.mistake import first_of
 from atomsim.scene.mistakes.numbers import around
 from atomsim.scene.mistakes.wording import readable
 from atomsim.scene.source import KeyPath, dotted
+from atomsim.scene.yaml.prepared import prepared
 from atomsim.scene.yaml.scalars import resolve
-from atomsim.scene.yaml.syntax_errors import explain
+from atomsim.scene.yaml.syntax_errors import HALF, explain
 from atomsim.scene.yaml.tree import Node
 
 MAX_CHARACTERS = 2**24
@@ -47,17 +48,19 @@ def read_yaml(text: str, place: Place, at: KeyPath = ()) -> Node:
     """
     if len(text) > MAX_CHARACTERS:
         raise SceneError([Problem(place(1, 1), "", "the text is longer than 16 MiB")])
+    text = text.lstrip("\ufeff")
     unprintable = _UNPRINTABLE.search(text)
     if unprintable is not None:
         lines = _LINE_BREAK.split(text[: unprintable.start()])
         message = f"the character U+{ord(unprintable.group()):04X} cannot stand in YAML"
         raise SceneError([Problem(place(len(lines), len(lines[-1]) + 1), "", message)])
-    reader = _Reader(text, place)
+    text, back = prepared(text)
+    reader = _Reader(text, place, back)
     try:
         return reader.document(at)
     except SceneError:
         if reader.refused_at is not None:
-            _Reader(text[: reader.refused_at], place).check_limits(at)
+            _Reader(text[: reader.refused_at], place, back).check_limits(at)
         raise
 
 
@@ -68,8 +71,9 @@ class _TooMuchError(SceneError):
 class _Reader:
     """Recursive descent over the events of a YAML parser; the depth is bounded before Python's is."""
 
-    def __init__(self, text: str, place: Place) -> None:
+    def __init__(self, text: str, place: Place, back: dict[int, str]) -> None:
         self._text = text
+        self._back = back
         self._events = self._parse(text)
         self._place = place
         self._problems: list[Problem] = []
@@ -113,7 +117,7 @@ class _Reader:
             mark = error.problem_mark or error.context_mark
             self.refused_at = mark.index if mark is not None else None
             place = self._place(mark.line + 1, mark.column + 1) if mark is not None else self._place(1, 1)
-            self._problems.append(Problem(place, "", explain(error, text)))
+            self._problems.append(Problem(place, "", explain(error, text.translate(self._back))))
             raise SceneError(self._told()) from None
 
     def _node(self, event: yaml.Event, path: KeyPath) -> Node:
@@ -139,19 +143,23 @@ class _Reader:
         return node
 
     def _scalar(self, event: yaml.ScalarEvent, path: KeyPath) -> str | int | float | bool | None:
+        text = str(event.value).translate(self._back)
         if event.implicit[0]:
-            return resolve(event.value)
-        unprintable = _UNPRINTABLE.search(event.value)
+            return resolve(text)
+        unprintable = _UNPRINTABLE.search(text)
         if unprintable is not None:
-            self._refuse(event, path, f"the character U+{ord(unprintable.group()):04X} cannot stand in a text")
-        return str(event.value)
+            code = ord(unprintable.group())
+            is_half = 0xD800 <= code < 0xE000
+            message = HALF if is_half else f"the character U+{code:04X} cannot stand in a text"
+            self._refuse(event, path, message)
+        return text
 
     def _blank(self, event: yaml.ScalarEvent) -> str | None:
         """Return the comment that stands where a value is missing, often an empty one; None where there is a value."""
         if event.value or not event.implicit[0] or event.start_mark is None:
             return None
         comment = _COMMENT.match(self._text, event.start_mark.index)
-        return comment[1] if comment is not None else ""
+        return comment[1].translate(self._back) if comment is not None else ""
 
     def _list(self, path: KeyPath) -> list[Node]:
         items: list[Node] = []
@@ -179,7 +187,7 @@ class _Reader:
         self._node(event, path)
         if event.value == "<<" and event.implicit[0]:
             self._refuse(event, path, "merge keys `<<` are not part of the scene language; write the keys out")
-        return str(event.value)
+        return str(event.value).translate(self._back)
 
     def _aliased(self, event: yaml.AliasEvent, path: KeyPath) -> Node:
         """Return what an alias repeats, marked at the alias."""

@@ -9,7 +9,13 @@ import yaml
 from atomsim.scene.mistakes.lookalikes import first_odd
 from atomsim.scene.mistakes.wording import shown
 
-_LINE_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
+_LINE_BREAK = re.compile("\r\n|[\r\n]")
+
+LONGEST_KEY = 1024
+"""What YAML allows a key in one line."""
+
+HALF = "an escape such as `\\ud83e` is only half of a character; write the character itself"
+"""What is wrong with one of the two halves in which JSON may escape a character."""
 
 _EXPLANATIONS = (
     (
@@ -41,6 +47,10 @@ def explain(error: yaml.MarkedYAMLError, text: str) -> str:
     problem = str(error.problem or error.context)
     mark, context = error.problem_mark, error.context_mark
     character = _lines(text)[mark.line][mark.column : mark.column + 1] if mark is not None else ""
+    if mark is not None and re.match(r"\\u[dD][89a-fA-F]", text[max(0, mark.index - 2) :]):
+        return HALF
+    if mark is not None and _ends_long_key(text, mark):
+        return f"the name or key that ends here is too long: more than {LONGEST_KEY:,} characters"
     if "violates indentation" in problem or character == "\t":
         return "a tab is not allowed here; indent with spaces"
     if "cannot start any token" in problem:
@@ -56,6 +66,12 @@ def explain(error: yaml.MarkedYAMLError, text: str) -> str:
     return f"this is not YAML: {problem}"
 
 
+def _ends_long_key(text: str, mark: yaml.Mark) -> bool:
+    """Tell whether a mark is at the colon of a key that is too long for a parser to see that it is one."""
+    before = text[max(0, mark.index - LONGEST_KEY) : mark.index]
+    return text[mark.index : mark.index + 1] == ":" and len(before) == LONGEST_KEY and not re.search("[\r\n{,]", before)
+
+
 def _cause(text: str, mark: yaml.Mark | None, context: yaml.Mark | None) -> str:
     """Say what else is odd about the line of a mistake, that where it began, and the one above: the likely cause."""
     lines = _lines(text)
@@ -64,9 +80,12 @@ def _cause(text: str, mark: yaml.Mark | None, context: yaml.Mark | None) -> str:
     near = [context.line] if context is not None else []
     near += [mark.line, mark.line - 1] if mark is not None else []
     for number in near:
-        odd = first_odd(lines[number]) if 0 <= number < len(lines) else None
+        line = lines[number] if 0 <= number < len(lines) else ""
+        odd = first_odd(line)
         if odd is not None:
             return f"; {odd} on line {number + 1} is not what it looks like"
+        if re.search(r"(?:^|[\s{\[,])(?://|/\*)", line):
+            return "; a comment begins with `#`"
     return ""
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import yaml
 
+from atomsim.scene.yaml.prepared import NO_BREAKS
 from atomsim.scene.yaml.scalars import NUMBER, NUMBER_STARTS
 
 
@@ -15,7 +16,14 @@ class _Writer(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[mi
     def ignore_aliases(self, data: Any) -> bool:
         return True
 
+    def represent_text(self, text: str) -> yaml.ScalarNode:
+        """Escape what YAML 1.1, which this dumper writes, would break a line at."""
+        style = '"' if any(sign in text for sign in NO_BREAKS) else None
+        node: yaml.ScalarNode = self.represent_scalar("tag:yaml.org,2002:str", text, style=style)
+        return node
 
+
+_Writer.add_representer(str, _Writer.represent_text)
 _Writer.add_implicit_resolver("tag:yaml.org,2002:float", NUMBER, list(NUMBER_STARTS))
 
 
