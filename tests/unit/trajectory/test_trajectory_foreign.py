@@ -114,7 +114,7 @@ def test_a_file_of_another_program_is_never_replaced(tmp_path: Path, name: str, 
     (tmp_path / name).rename(taken)
     before = digest_of(taken)
     with pytest.raises(InputError) as caught:
-        Recorder(tmp_path / "out.h5", header(), replace=True)
+        Recorder.begin(tmp_path / "out.h5", header(), replace=True)
     assert str(caught.value) == f"{taken} exists and is no trajectory"
     assert digest_of(taken) == before
 
@@ -175,7 +175,7 @@ def test_what_another_program_put_into_another_order_is_still_ours(tmp_path: Pat
         del copy["filler"]
     other.replace(path)
     with pytest.raises(InputError, match=r"out\.h5 exists$"):
-        Recorder(path, header())
+        Recorder.begin(path, header())
 
 
 def test_an_author_called_like_us_does_not_make_a_file_ours(tmp_path: Path) -> None:
@@ -187,5 +187,5 @@ def test_an_author_called_like_us_does_not_make_a_file_ours(tmp_path: Path) -> N
     with pytest.raises(InputError, match=r"is an H5MD file written by other, not a trajectory"):
         Trajectory(path)
     with pytest.raises(InputError, match="exists and is no trajectory"):
-        Recorder(path, header(), replace=True)
+        Recorder.begin(path, header(), replace=True)
     assert journal_path(tmp_path / "x.h5").exists()
