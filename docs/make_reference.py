@@ -49,7 +49,8 @@ Numbers may be written `1e-9`, whole ones `1e6`, and none `1,000`; booleans are 
 | --- | --- |
 | `[x, y, z]` | three numbers |
 | `selection` | atoms by name: `ring` (a group), `ring[0]`, `ring[-1]`, `ring[0:10]`, `ring[::2]`, `floor[0, :]` \
-(planes and blocks, x first), `all`, or a list of these (their union) |
+(planes and blocks, x first), `all`, or a list of these (their union); of a group with \
+[copies](#copies-of-a-group-copies) `leg.0` is one copy and `leg[-1]` the last atom of each |
 | `[selection, selection]` | two selections: `[ring, floor]`, `[[left, right], floor]` |
 | `color` | a CSS name such as `steelblue`, or `"#rgb"` or `"#rrggbb"` in quotes |
 | `mapping by name` | `name: value`, one a line; names have letters, digits, `_` and `-` |
@@ -69,6 +70,30 @@ SELECTIONS = """\
 
 Wherever atoms are named, a part of a group will do.
 """
+
+COPIES = """\
+### Copies of a group: `copies`
+
+A part that there is several times is written once. The atoms of a group with `copies` are those of all its copies, one
+copy after the other.
+
+| where | `leg` means | `leg.0` means |
+| --- | --- | --- |
+| a selection | all legs; an index counts in each of them: `leg[-1]` is every foot | the first leg; `leg.0[-1]` is \
+its foot |
+| bonds `within` | inside each leg, and never from one to another | inside the first |
+| bonds `between` | copies of one number meet: `between: [thigh, shin]` binds `thigh.0` to `shin.0`, `thigh.1` to \
+`shin.1`; what has no copies meets them all; two groups need the same number of copies | what has no copies |
+| collisions | all legs as one group, which also collide with one another; only `min_gap` counts in each | the first |
+| `torque` | each leg by itself, with all of `magnitude`, about its own centre, or about the copy of `about` that has \
+the same number | the first |
+
+Number 0 is the group as written. With a list of copies, each copies what the ones before it made: `[{count: 2, step:
+[9, 0, 0]}, {count: 2, step: [0, 6, 0]}]` makes four, of which 0 and 1 are 9 apart, and 0 and 2 are 6 apart.
+"""
+
+FURTHER_EXAMPLES = {"string": ("from",)}
+"""Of words that can be said in several ways."""
 
 NOTES = {
     "atomsim run": """\
@@ -163,6 +188,9 @@ def _scene_reference() -> Iterator[str]:
     yield _examples("rotate")
     yield from _section("### Spinning a group: `spin`", ["Spin"], docs)
     yield _examples("spin")
+    yield COPIES
+    yield _fields(docs["Copies"])
+    yield _examples("copies")
     yield from _family("## Bonds", "bonds", docs)
     yield from _section("## Collisions", ["Collisions"], docs)
     yield _examples("within", "between", "among", "except_bound")
@@ -190,13 +218,18 @@ def _family(heading: str, name: str, docs: dict[str, dict[str, FieldDoc]]) -> It
     shared = set(_annotated(base))
     yield heading + "\n"
     yield f"Each has a `{section.key}`, and may have:\n"
-    yield _fields({key: doc for key, doc in docs[first.__name__].items() if key in shared})
+    yield _fields({key: _as_inherited(key, section.declarations, docs) for key in _annotated(base)})
     for word, declaration in section.words.items():
         yield f"### `{word}`\n"
         yield about(declaration) + "\n"
         inherited = shared - set(_annotated(declaration))
         yield _fields({key: doc for key, doc in docs[declaration.__name__].items() if key not in inherited})
-        yield _examples(word)
+        yield _examples(word, *FURTHER_EXAMPLES.get(word, ()))
+
+
+def _as_inherited(key: str, members: Iterable[type[Declaration]], docs: dict[str, dict[str, FieldDoc]]) -> FieldDoc:
+    """Return what is known of a shared key where no declaration says it anew."""
+    return next(docs[member.__name__][key] for member in members if key not in _annotated(member))
 
 
 def _annotated(class_: type) -> list[str]:

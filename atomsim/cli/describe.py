@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
@@ -41,11 +42,14 @@ def describe_model(model: Model, state: State, rounds: int, record_every: int) -
     n_bonds = sum(table.first.size for table in model.bonds)
     n_pairs = sum(n_collision_pairs(table) for table in model.collisions)
     held = held_atoms(model.forces)
+    on: Counter[str] = Counter()
+    for force in model.forces:
+        on[force.origin.name] += force.atoms.size
     return [
         _line("atoms", f"{model.n_atoms:,}", (_group(group) for group in model.groups)),
         _line("bonds", f"{n_bonds:,}", (_bonds(table, held) for table in model.bonds)),
         _line("collisions", f"{n_pairs:,} pairs", (_collisions(table) for table in model.collisions)),
-        _line("forces", f"{len(model.forces)}", (f"{f.origin.name} on {f.atoms.size:,}" for f in model.forces)),
+        _line("forces", f"{len(on)}", (f"{name} on {n_atoms:,}" for name, n_atoms in on.items())),
         _line("run", f"{rounds:,} rounds of τ = {model.time_step:g}", stable),
         _line("record", f"{n_frames:,} frames, {readable_bytes(size)}", ()),
         _line("memory", f"about {readable_bytes(_memory(model))}", ()),

@@ -102,7 +102,7 @@ class _Compiler:
         self._stop_on(checks.too_many_bonds(scene.bonds, self._selections))
         self._bonds = _all_of([self._bond_table(name, entry) for name, entry in scene.bonds.items()])
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
-        forces = [self._force(name, entry) for name, entry in scene.forces.items()]
+        forces = [force for name, entry in scene.forces.items() for force in self._forces(name, entry)]
         self._complain_all(checks.colors_of_nothing(scene, self._selections))
         self._stop_if_wrong()
         model = Model(
@@ -112,7 +112,7 @@ class _Compiler:
             groups=self._spans(layouts),
             bonds=self._bonds,
             collisions=_all_of(collisions),
-            forces=_all_of(forces),
+            forces=tuple(forces),
         )
         return model, State(0, _read_only(self._position), _read_only(velocity))
 
@@ -120,7 +120,7 @@ class _Compiler:
         """Give every group its place, colour and origin."""
         colors = group_colors(self._scene)
         return tuple(
-            GroupSpan(name, layout.start, layout.stop, colors[name], self._origin("groups", name))
+            GroupSpan(name, layout.start, layout.stop, colors[name], self._origin("groups", name), layout.n_copies)
             for name, layout in layouts.items()
         )
 
@@ -172,12 +172,19 @@ class _Compiler:
         """Yield the blocks of pairs that a declaration is the union of."""
         atoms = self._selections.atoms
         if collisions.within is not None:
-            yield from (Within(_read_only(atoms((part,))), collisions.min_gap or 1) for part in collisions.within)
+            for part in collisions.within:
+                yield from self._within(part, collisions.min_gap or 1)
         elif collisions.between is not None:
             left, right = collisions.between
             yield Between(_read_only(atoms(left)), _read_only(atoms(right)))
         else:
             yield from self._among(collisions.among or ())
+
+    def _within(self, expression: str, min_gap: int) -> Iterable[Within | Between]:
+        """Yield the blocks of one selection; places are counted in each copy, and copies collide with one another."""
+        copies = self._selections.each_copy(expression) if min_gap > 1 else [expression]
+        yield from (Within(_read_only(self._selections.atoms((copy,))), min_gap) for copy in copies)
+        yield from self._among(tuple((copy,) for copy in copies))
 
     def _among(self, sides: tuple[tuple[str, ...], ...]) -> Iterable[Between]:
         """Yield few blocks with all pairs across sides: between two halves of the sides, then inside each half."""
@@ -187,42 +194,47 @@ class _Compiler:
             yield from self._among(left)
             yield from self._among(right)
 
-    def _force(self, name: str, force: Force) -> ExternalForce | None:
-        """Compile one external force."""
+    def _forces(self, name: str, force: Force) -> list[ExternalForce]:
+        """Compile one external force; a torque turns each copy by itself, so it is one for each."""
         path = ("forces", name)
         origin = self._origin(*path)
         try:
             atoms = _read_only(self._selections.atoms(force.acts_on))
             match force:
                 case Damping():
-                    return DampingForce(origin, atoms, force.coefficient)
+                    return [DampingForce(origin, atoms, force.coefficient)]
                 case Gravity():
-                    return PushForce(origin, atoms, force.impulse, 0, None)
+                    return [PushForce(origin, atoms, force.impulse, 0, None)]
                 case Push():
-                    return PushForce(origin, atoms, force.impulse, force.from_round, force.until_round)
+                    return [PushForce(origin, atoms, force.impulse, force.from_round, force.until_round)]
                 case Oscillate():
-                    return OscillateForce(origin, atoms, force.impulse, force.period, force.phase)
+                    return [OscillateForce(origin, atoms, force.impulse, force.period, force.phase)]
                 case Torque():
-                    about = atoms if force.about is None else _read_only(self._selections.atoms(force.about))
-                    x, y, z = unit(force.axis).tolist()
-                    return TorqueForce(origin, atoms, (x, y, z), force.magnitude, about)
+                    return list(self._torques(origin, force))
                 case Tether():
                     return self._tether(origin, atoms, force)
                 case Hold():
-                    return HoldForce(origin, atoms)
+                    return [HoldForce(origin, atoms)]
                 case _:
                     assert_never(force)
         except SelectionError as error:
             self._complain_of_selection(path, force, error)
-            return None
+            return []
 
-    def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> TetherForce | None:
+    def _torques(self, origin: Origin, force: Torque) -> Iterable[TorqueForce]:
+        """Yield a torque for each copy of what it acts on, about its own centre or that of the copy of `about`."""
+        x, y, z = unit(force.axis).tolist()
+        matched = self._selections.matched((force.acts_on, force.acts_on if force.about is None else force.about))
+        for atoms, about in zip(*matched, strict=True):
+            yield TorqueForce(origin, _read_only(atoms), (x, y, z), force.magnitude, _read_only(about))
+
+    def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> list[ExternalForce]:
         path = ("forces", origin.name)
         if self._complain_all(checks.too_large_target(path, force.target)):
-            return None
+            return []
         initial = squared_distance(self._placed[atoms].T, np.array(force.target)[:, None])
         rest_squared = self._rest_squared(path, force.rest, initial)
-        return TetherForce(origin, atoms, force.target, _read_only(rest_squared))
+        return [TetherForce(origin, atoms, force.target, _read_only(rest_squared))]
 
     def _rest_squared(self, path: KeyPath, rest: Rest, initial: Floats) -> Floats:
         """Return r² per pair: the squared initial distance, without the detour through the root, or a number's."""

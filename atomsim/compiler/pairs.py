@@ -50,58 +50,64 @@ def expand(bonds: Bonds, selections: Selections, position: Floats) -> Pairs:
 
 
 def _expand_each(bonds: Bonds, selections: Selections, position: Floats) -> list[Pairs]:
-    """Apply the rule inside each group of `within`, or across `between`."""
-    if isinstance(bonds, NeighbourBonds):
-        return [_neighbours(bonds, expression, selections) for expression in bonds.within]
-    if bonds.between is not None:
-        left, right = (selections.atoms(side) for side in bonds.between)
-        return [_across(bonds, left, right, position)]
-    assert bonds.within is not None  # the language requires one of the two
-    return [_inside(bonds, expression, selections, position) for expression in bonds.within]
+    """Apply the rule inside each group of `within`, or across `between`: copy by copy where there are copies."""
+    if bonds.within is not None:
+        return [_inside(bonds, expression, selections, position) for expression in bonds.within]
+    assert not isinstance(bonds, NeighbourBonds)  # the language requires `within`
+    assert bonds.between is not None  # the language requires one of the two
+    left, right = selections.matched(bonds.between)
+    return [_across(bonds, one, other, position) for one, other in zip(left, right, strict=True)]
 
 
-def _neighbours(bonds: NeighbourBonds, expression: str, selections: Selections) -> Pairs:
-    """Pairs at most `reach` places apart in the selection, around the end where it is closed."""
-    atoms = selections.atoms((expression,))
-    layout = selections.whole_group(expression)
-    closed = bonds.closed if bonds.closed is not None else layout is not None and layout.is_closed
-    place = np.arange(atoms.size)
-    one: list[Indices] = []
-    other: list[Indices] = []
-    for gap in range(1, min(bonds.reach, atoms.size - 1) + 1):
-        lower = place if closed else place[:-gap]
-        upper = (lower + gap) % atoms.size
-        one.append(atoms[lower])
-        other.append(atoms[upper])
-    if not one:
-        return atoms[:0], atoms[:0]
-    return np.concatenate(one), np.concatenate(other)
+def _inside(bonds: Bonds, expression: str, selections: Selections, position: Floats) -> Pairs:
+    """Pairs inside one selection, or inside each copy of it."""
+    copies = np.stack(selections.by_copy((expression,)))
+    if isinstance(bonds, DistanceThresholdBonds) and bonds.metric == "space":
+        return _joined([_near_inside(atoms, position, bonds.threshold) for atoms in copies])
+    first, second = _places_inside(bonds, expression, selections, copies)
+    return copies[:, first].ravel(), copies[:, second].ravel()
 
 
-def _inside(
-    bonds: AllPairsBonds | DistanceThresholdBonds | ListedBonds,
-    expression: str,
-    selections: Selections,
-    position: Floats,
-) -> Pairs:
-    """Pairs inside one selection."""
-    atoms = selections.atoms((expression,))
+def _places_inside(bonds: Bonds, expression: str, selections: Selections, copies: Indices) -> Pairs:
+    """Pairs of places in a selection, which are the same in every copy, (n_copies, n_atoms of each)."""
+    n_atoms = copies.shape[1]
     match bonds:
+        case NeighbourBonds():
+            return _neighbours(bonds, expression, selections, n_atoms)
         case AllPairsBonds():
-            return _all_pairs(atoms)
+            return _all_pairs(np.arange(n_atoms))
         case DistanceThresholdBonds():
-            if bonds.metric == "space":
-                first, second = near_pairs(position[atoms].T, None, bonds.threshold)
-                return _apart(position, atoms[first], atoms[second])
             places = selections.grid_places(expression)
             if places is None:
                 raise RuleError("metric", f"`metric: grid` needs a plane or a block, and `{expression}` is neither")
-            first, second = near_pairs(_in_space(places), None, bonds.threshold)
-            return atoms[first], atoms[second]
+            return near_pairs(_in_space(places), None, bonds.threshold)
         case ListedBonds():
-            return _listed(bonds, atoms, atoms)
+            return _listed(bonds, np.arange(n_atoms), np.arange(n_atoms))
         case _:
             assert_never(bonds)
+
+
+def _neighbours(bonds: NeighbourBonds, expression: str, selections: Selections, n_atoms: int) -> Pairs:
+    """Places at most `reach` apart, around the end where the selection is closed."""
+    layout = selections.whole_group(expression)
+    closed = bonds.closed if bonds.closed is not None else layout is not None and layout.is_closed
+    place = np.arange(n_atoms)
+    one, other = [place[:0]], [place[:0]]
+    for gap in range(1, min(bonds.reach, n_atoms - 1) + 1):
+        lower = place if closed else place[:-gap]
+        one.append(lower)
+        other.append((lower + gap) % n_atoms)
+    return np.concatenate(one), np.concatenate(other)
+
+
+def _near_inside(atoms: Indices, position: Floats, threshold: float) -> Pairs:
+    first, second = near_pairs(position[atoms].T, None, threshold)
+    return _apart(position, atoms[first], atoms[second])
+
+
+def _joined(pairs: list[Pairs]) -> Pairs:
+    one, other = zip(*pairs, strict=True)
+    return np.concatenate(one), np.concatenate(other)
 
 
 def _all_pairs(atoms: Indices) -> Pairs:

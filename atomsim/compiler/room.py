@@ -29,9 +29,11 @@ def n_countable_pairs(bonds: Bonds, selections: Selections) -> int:
     Raises:
         SelectionError: a selection that names no atoms.
     """
-    sizes = [selections.atoms((part,)).size for part in bonds.within or ()]
+    copies = [selections.by_copy((part,)) for part in bonds.within or ()]
+    sizes = [(len(atoms), atoms[0].size) for atoms in copies]
     if bonds.rule == "neighbour":
-        return sum(size * min(bonds.reach, size) for size in sizes)
+        return sum(n_copies * size * min(bonds.reach, size) for n_copies, size in sizes)
     if bonds.rule == "all-pairs" and bonds.between is not None:
-        return math.prod(selections.atoms(side).size for side in bonds.between)
-    return sum(math.comb(size, 2) for size in sizes) if bonds.rule == "all-pairs" else 0
+        left, right = selections.matched(bonds.between)
+        return sum(one.size * other.size for one, other in zip(left, right, strict=True))
+    return sum(n_copies * math.comb(size, 2) for n_copies, size in sizes) if bonds.rule == "all-pairs" else 0

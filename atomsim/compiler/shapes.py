@@ -11,11 +11,14 @@ from typing import assert_never
 
 import numpy as np
 
+from atomsim.compiler.ball import ball_offsets, count_in_ball
 from atomsim.core.forces import quantise
 from atomsim.core.model import Floats
 from atomsim.scene.language import (
     AtomsGroup,
+    BallGroup,
     BlockGroup,
+    Copies,
     Group,
     PlaneGroup,
     PolygonGroup,
@@ -30,10 +33,23 @@ RING_PLANE = {"z": (0, 1), "y": (0, 2), "x": (1, 2)}
 
 
 def count_atoms(group: Group) -> int:
-    """Return the number of atoms of a group without making them."""
+    """Return the number of atoms of a group, with its copies, without making them."""
+    return _count_atoms_of_one(group) * count_copies(group)
+
+
+def count_copies(group: Group) -> int:
+    """Return how many copies of a group there are, itself counted."""
+    return math.prod(copies.count for copies in group.copies)
+
+
+def _count_atoms_of_one(group: Group) -> int:
     match group:
-        case StringGroup() | RingGroup():
+        case StringGroup():
+            return _count_along(group)
+        case RingGroup():
             return group.count
+        case BallGroup():
+            return count_in_ball(group)
         case PlaneGroup() | BlockGroup():
             return math.prod(group.counts)
         case AtomsGroup():
@@ -45,7 +61,17 @@ def count_atoms(group: Group) -> int:
 
 
 def place(group: Group) -> tuple[Floats, Floats]:
-    """Return the initial positions [length] and velocities of a group's atoms, each (n_atoms, 3) float64."""
+    """Return the initial positions [length] and velocities of a group's atoms, each (n_atoms, 3) float64.
+
+    Copies come one after the other, the first as written.
+    """
+    position, velocity = _place_one(group)
+    for copies in group.copies:
+        position, velocity = _copied(position, velocity, copies)
+    return position, velocity
+
+
+def _place_one(group: Group) -> tuple[Floats, Floats]:
     offset = _offsets(group)
     for turn in group.rotate:
         offset = _quantised(_rotated(offset, turn.axis, turn.degrees))
@@ -55,7 +81,7 @@ def place(group: Group) -> tuple[Floats, Floats]:
         if group.rotate or group.centre is not None:
             position = (middle if group.centre is None else np.array(group.centre)) + offset
     else:
-        position = np.array(group.centre) + offset
+        position = _centre(group) + offset
     velocity = np.tile(np.array(group.velocity), (offset.shape[0], 1))
     if group.spin is not None:
         velocity = velocity + group.spin.rate * _cross(unit(group.spin.axis), offset)
@@ -66,7 +92,7 @@ def _offsets(group: Group) -> Floats:
     """Return the atoms of a shape relative to its centre, (n_atoms, 3)."""
     match group:
         case StringGroup():
-            return _centred(group.count)[:, None] * _vector(group.step)
+            return _centred(_count_along(group))[:, None] * _step_along(group)
         case RingGroup():
             return _ring(group)
         case PlaneGroup():
@@ -79,11 +105,48 @@ def _offsets(group: Group) -> Floats:
         case PolygonGroup():
             points = np.concatenate([_along_side(start, stop, group.spacing) for start, stop in _sides(group)])
             return _quantised(points - _centroid(points))
+        case BallGroup():
+            return ball_offsets(group)
         case AtomsGroup():
             points = np.array(group.positions)
             return points - _centroid(points)
         case _:
             assert_never(group)
+
+
+def _centre(group: Group) -> Floats:
+    """Return where the centre of a shape goes, (3,); a string may say instead where it begins."""
+    if isinstance(group, StringGroup) and group.from_ is not None:
+        return _vector(group.from_) + (_count_along(group) - 1) / 2 * _step_along(group)
+    return np.array(group.centre if group.centre is not None else (0.0, 0.0, 0.0))
+
+
+def _count_along(group: StringGroup) -> int:
+    """Return the number of atoms of a string."""
+    if group.spacing is None or group.from_ is None or group.to is None:
+        return group.count or 0
+    return _steps_along(group.from_, group.to, group.spacing) + 1
+
+
+def _step_along(group: StringGroup) -> Floats:
+    """Return the way from each atom of a string to the next, (3,)."""
+    if group.from_ is None or group.to is None:
+        return np.array(group.step)
+    return (_vector(group.to) - _vector(group.from_)) / (_count_along(group) - 1)
+
+
+def _copied(position: Floats, velocity: Floats, copies: Copies) -> tuple[Floats, Floats]:
+    """Return some atoms and their copies, one copy after the other, the first where they are."""
+    if copies.axis is None:
+        way = np.arange(copies.count)[:, None, None] * np.array(copies.step)
+        return (position + way).reshape(-1, 3), np.tile(velocity, (copies.count, 1))
+    centre = _vector(copies.through or (0.0, 0.0, 0.0))
+    step = 360.0 / copies.count if copies.degrees is None else copies.degrees
+    positions, velocities = [position], [velocity]
+    for degrees in (number * step for number in range(1, copies.count)):
+        positions.append(centre + _quantised(_rotated(position - centre, copies.axis, degrees)))
+        velocities.append(_quantised(_rotated(velocity, copies.axis, degrees)))
+    return np.concatenate(positions), np.concatenate(velocities)
 
 
 def _centred(count: int) -> Floats:

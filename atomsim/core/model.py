@@ -31,19 +31,30 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class GroupSpan:
-    """The consecutive atoms of one group: start ≤ atom < stop. `color` is `#rrggbb`."""
+    """The consecutive atoms of one group, copy after copy: start ≤ atom < stop. `color` is `#rrggbb`."""
 
     name: str
     start: int
     stop: int
     color: str
     origin: Origin
+    n_copies: int = 1
 
 
 def atom_name(atom: int, groups: Sequence[GroupSpan]) -> str:
     """Write an atom as a selection does, with its number: `left[3] (atom 3)`."""
     group = next(group for group in groups if group.start <= atom < group.stop)
-    return f"{group.name}[{atom - group.start}] (atom {atom})"
+    return f"{atom_expression(group.name, atom - group.start, group.stop - group.start, group.n_copies)} (atom {atom})"
+
+
+def atom_expression(name: str, index: int, n_atoms: int, n_copies: int) -> str:
+    """Write the atom at an index of a group as a selection does.
+
+    >>> atom_expression("left", 3, 9, 1), atom_expression("finger", 7, 12, 3)
+    ('left[3]', 'finger.1[3]')
+    """
+    copy, inside = divmod(index, n_atoms // n_copies)
+    return f"{name}[{inside}]" if n_copies == 1 else f"{name}.{copy}[{inside}]"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -36,7 +36,7 @@ def sections() -> dict[str, Section]:
     """Return every section of a scene by its key, in the order of the language."""
     return {
         key: _section(field.annotation)
-        for key, field in Scene.model_fields.items()
+        for key, field in Scene.fields_by_key().items()
         if get_origin(field.annotation) is dict
     }
 
@@ -56,14 +56,14 @@ def declarations() -> dict[str, type[Declaration]]:
         declaration = to_visit.pop()
         if found.setdefault(declaration.__name__, declaration) is not declaration:
             raise TypeError(f"two declarations are called {declaration.__name__}")
-        inner = (part for field in declaration.model_fields.values() for part in _parts(field.annotation))
+        inner = (part for field in declaration.fields_by_key().values() for part in _parts(field.annotation))
         to_visit += [part for part in inner if is_declaration(part) and part not in found.values()]
     return {name: found[name] for name in sorted(found, key=lambda name: (name == "Scene", name))}
 
 
 def discriminator(declaration: type[Declaration]) -> tuple[str, str] | None:
     """Return the key and the word by which a declaration is chosen among its kind: ("shape", "ring")."""
-    for key, field in declaration.model_fields.items():
+    for key, field in declaration.fields_by_key().items():
         words = get_args(field.annotation) if get_origin(field.annotation) is Literal else ()
         if field.is_required() and len(words) == 1 and isinstance(words[0], str):
             return key, words[0]
@@ -73,13 +73,13 @@ def discriminator(declaration: type[Declaration]) -> tuple[str, str] | None:
 @functools.cache
 def selecting_keys(declaration: type[Declaration]) -> tuple[str, ...]:
     """Return the keys under which a declaration selects atoms."""
-    fields = declaration.model_fields.items()
+    fields = declaration.fields_by_key().items()
     return tuple(key for key, field in fields if any(part == SelectionText for part in _parts(field.annotation)))
 
 
 def is_mapping(declaration: type[Declaration], key: str) -> bool:
     """Tell whether further keys or names stand below a key of a declaration, and nothing else may."""
-    options = _options(declaration.model_fields[key].annotation, [])
+    options = _options(declaration.fields_by_key()[key].annotation, [])
     return any(get_origin(option) is dict or is_declaration(option) for option in options)
 
 
@@ -105,8 +105,8 @@ def declaration_at(path: KeyPath, data: Any) -> type[Declaration] | None:
 def _inside(annotation: Any, data: Any, part: str | int) -> Any:
     """Return the annotation of what stands under a key or an index."""
     declaration = _chosen(annotation, data)
-    if declaration is not None and part in declaration.model_fields:
-        return declaration.model_fields[str(part)].annotation
+    if declaration is not None and part in declaration.fields_by_key():
+        return declaration.fields_by_key()[str(part)].annotation
     for option in _options(annotation, data):
         if get_origin(option) is dict:
             return get_args(option)[1]

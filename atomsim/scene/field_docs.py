@@ -56,7 +56,7 @@ def _item(schema: Schema, index: str | int) -> Schema:
 
 def default(declaration: type[Declaration], key: str) -> Schema:
     """Return what a schema says of the default of a key: nothing if there is none, or none that can be written."""
-    field = declaration.model_fields[key]
+    field = declaration.fields_by_key()[key]
     if field.is_required() or field.default_factory is not None or field.default is None:
         return {}
     return {"default": json.loads(json.dumps(field.default))}
@@ -64,7 +64,7 @@ def default(declaration: type[Declaration], key: str) -> Schema:
 
 def _default_in_words(declaration: type[Declaration], key: str) -> str | None:
     """Return a default as the user would write it, empty if nothing stands for it."""
-    if declaration.model_fields[key].is_required():
+    if declaration.fields_by_key()[key].is_required():
         return None
     value = default(declaration, key).get("default", "")
     if value in ([], ""):
@@ -83,7 +83,8 @@ def descriptions(declaration: type[Declaration]) -> dict[str, str]:
         if issubclass(ancestor, Declaration):
             inherited = dict(_documented(_in_module(ancestor.__module__)[ancestor.__name__]))
             found |= {field: text for field, text in inherited.items() if field not in found}
-    return found
+    fields = declaration.model_fields
+    return {fields[name].alias or name: text for name, text in found.items()}
 
 
 def about(declaration: type[Declaration]) -> str:

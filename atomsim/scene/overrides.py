@@ -106,7 +106,7 @@ class _Setting:
             close = suggestion(key, entries)
             whole = f"make it whole with `{dotted(path)}={{…}}`"
             raise self._not_there(path, whole if close is None else f"did you mean `{readable(close)}`?")
-        if key not in declaration.model_fields:
+        if key not in declaration.fields_by_key():
             raise self._not_there(path, meant(key, descriptions(declaration), "the keys here are"))
         if not is_mapping(declaration, key):
             whole = f"{dotted(path)}={form(declaration, key)}"

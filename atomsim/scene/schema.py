@@ -46,7 +46,7 @@ def schema_text() -> str:
 
 def _definition(declaration: type[Declaration]) -> Schema:
     """Return the schema of a declaration."""
-    fields, described = declaration.model_fields, descriptions(declaration)
+    fields, described = declaration.fields_by_key(), descriptions(declaration)
     return {
         "description": about(declaration),
         "type": "object",

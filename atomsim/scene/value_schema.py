@@ -39,7 +39,7 @@ def in_words(schema: Schema) -> str:
     if "title" in schema:
         return str(schema["title"])
     if "$ref" in schema:
-        keys = declarations()[schema["$ref"].removeprefix(REFERENCE)].model_fields
+        keys = declarations()[schema["$ref"].removeprefix(REFERENCE)].fields_by_key()
         return f"{{{', '.join(keys)}}}"
     if "const" in schema or "enum" in schema:
         return either(str(choice) for choice in schema.get("enum") or [schema["const"]])
@@ -62,7 +62,9 @@ def _scalar_in_words(schema: Schema) -> str:
 
 @functools.cache
 def _hints(declaration: type[Declaration]) -> dict[str, Any]:
-    return typing.get_type_hints(declaration, include_extras=True)
+    """Return the annotations by key."""
+    hints, fields = typing.get_type_hints(declaration, include_extras=True), declaration.model_fields
+    return {field.alias or name: hints[name] for name, field in fields.items()}
 
 
 def _schema(annotation: Any) -> Schema:

@@ -79,7 +79,7 @@ def document(header: Header) -> Document:
         "rounds": header.rounds,
         "record_every": header.record_every,
         "compress": header.compress,
-        "group_names": [group.name for group in header.groups],
+        "group_names": [_group_name(group) for group in header.groups],
         "group_start": [group.start for group in header.groups],
         "group_color": [group.color for group in header.groups],
         "rule_names": [f"{origin.section}.{origin.name}" for origin in header.origins],
@@ -196,8 +196,19 @@ def _groups(values: Mapping[str, Any], origins: tuple[Origin, ...]) -> tuple[Gro
     limits = [*starts, values["n_atoms"]]
     _require(starts[0] == 0 and all(start < stop for start, stop in pairwise(limits)), "group_start")
     _require(all(re.fullmatch("#[0-9a-fA-F]{6}", color) for color in colors), "group_color")
-    spans = zip(names, pairwise(limits), colors, origins[: len(names)], strict=True)
-    return tuple(GroupSpan(name, start, stop, color, origin) for name, (start, stop), color, origin in spans)
+    found = [re.fullmatch(r"(.*?)(?: × ([1-9][0-9]{0,9}))?", name, re.DOTALL | re.ASCII) for name in names]
+    copies = [(match[1], int(match[2] or 1)) for match in found if match]
+    _require(
+        all((stop - start) % n == 0 for (start, stop), (_, n) in zip(pairwise(limits), copies, strict=True)),
+        "group_names",
+    )
+    spans = zip(copies, pairwise(limits), colors, origins[: len(names)], strict=True)
+    return tuple(GroupSpan(name, start, stop, color, origin, n) for (name, n), (start, stop), color, origin in spans)
+
+
+def _group_name(group: GroupSpan) -> str:
+    """Return a group's name, and its number of copies if it has any: `finger × 3`."""
+    return group.name if group.n_copies == 1 else f"{group.name} × {group.n_copies}"
 
 
 def _layout(texts: list[str]) -> Layout:

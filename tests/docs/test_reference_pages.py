@@ -26,6 +26,8 @@ EXTRA_EXAMPLES = {
     "between",
     "among",
     "except_bound",
+    "from",
+    "copies",
     "rotate",
     "spin",
     "jitter",

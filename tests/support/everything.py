@@ -45,6 +45,26 @@ GROUPS: dict[str, Any] = {
         "rotate": {"axis": "y", "degrees": 200},
         "spin": {"axis": "x", "rate": -1},
     },
+    "leg": {
+        "shape": "string",
+        "from": [5, 5, 0],
+        "to": [8, 6, 1],
+        "spacing": 0.8,
+        "velocity": [0.2, 0, 0.1],
+        "copies": [
+            {"count": 2, "step": [0, 0, -2.5]},
+            {"count": 3, "axis": [0.2, 0, 1], "through": [6, 4, 0], "degrees": 50},
+        ],
+    },
+    "foot": {
+        "shape": "ball",
+        "radius": 0.9,
+        "spacing": 1.1,
+        "centre": [8.5, 6.5, 1],
+        "copies": [{"count": 2, "step": [0, 0, -2.5]}, {"count": 3, "axis": "z"}],
+    },
+    "shell": {"shape": "ball", "radius": 1.6, "spacing": 1, "hollow": True, "centre": [-6, -4, 1]},
+    "rope": {"shape": "string", "from": [-7, -4, 3], "step": [0.3, 0.2, 0.6], "count": 4},
     "turned": {
         "shape": "atoms",
         "positions": [[6, 0, 0], [7, 0.5, 0]],
@@ -63,6 +83,11 @@ BONDS: dict[str, Any] = {
     "glue": {"between": ["brick", ["loose", "moved[0]"]], "rule": "distance-threshold", "threshold": 2.5},
     "weld": {"between": [["loose", "moved"], ["moved", "turned"]], "rule": "all-pairs"},
     "stiff": {"within": "brick[0, :, 1:]", "rule": "all-pairs"},
+    "legs": {"within": ["leg", "leg.2[::2]"], "rule": "neighbour", "reach": 2},
+    "ankles": {"between": ["leg[-1]", ["foot[0]", "foot[-1]"]], "rule": "all-pairs", "rest": 1.1},
+    "hips": {"between": ["shell", "leg[0]"], "rule": "pairs", "pairs": [[0, 0], [5, 0]]},
+    "feet": {"within": "foot", "rule": "distance-threshold", "threshold": 1.3},
+    "tied": {"between": ["leg.0[-1]", "leg.1[-1]"], "rule": "all-pairs"},
     "listed": {"within": "triangle", "rule": "pairs", "pairs": [[0, 4], [4, 0], [2, 5]]},
     "cross": {"between": ["wheel", "floor[-1, -1]"], "rule": "pairs", "pairs": [[10, 0], [3, 0]], "rest": 2},
 }
@@ -73,6 +98,8 @@ COLLISIONS: dict[str, Any] = {
     "contact": {"between": ["floor", ["thread", "wheel", "brick[:, 0, :]"]]},
     "overlap": {"between": [["loose", "moved"], ["moved", "turned"]]},
     "rest": {"among": ["triangle", "thread[2:7]", "hoop", ["brick", "loose"]]},
+    "legs": {"within": ["leg", "rope"], "min_gap": 2},
+    "feet": {"among": ["foot.0", "foot.1", ["foot.2", "shell"]]},
     "unbound": {"within": ["triangle", "brick"], "except_bound": True},
     "far": {"between": ["all", ["wheel", "thread"]], "except_bound": 3},
 }
@@ -86,6 +113,8 @@ FORCES: dict[str, Any] = {
     "shake": {"kind": "oscillate", "acts_on": "floor[:, 0]", "impulse": [0.02, 0.05, 0], "period": 7, "phase": 0.5},
     "motor": {"kind": "torque", "acts_on": "wheel", "axis": [0.2, 1, 0], "magnitude": 0.5},
     "crank": {"kind": "torque", "acts_on": "wheel[0:3]", "axis": "y", "magnitude": -0.2, "about": ["wheel", "hoop"]},
+    "steps": {"kind": "torque", "acts_on": "leg", "axis": "x", "magnitude": 0.3},
+    "kicks": {"kind": "torque", "acts_on": "foot[1:]", "axis": "z", "magnitude": 0.1, "about": "leg[0]"},
     "leash": {"kind": "tether", "acts_on": ["turned", "loose[0]"], "target": [6, 1, 0]},
     "anchor": {"kind": "tether", "acts_on": "hoop", "target": [-3, 1, 1], "rest": 0.5},
 }

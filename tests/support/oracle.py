@@ -15,7 +15,7 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
-from support.oracle_pairs import Group, Groups, bound_pairs, colliding_pairs, rest_squared, select
+from support.oracle_pairs import Group, Groups, bound_pairs, colliding_pairs, rest_squared, select, select_by_copy
 from support.oracle_shapes import Vector, add, cross, quantise, square, sub, unit
 
 Data = dict[str, Any]
@@ -148,18 +148,24 @@ def build(scene: Data) -> World:
         velocity=[velocity for group in groups.values() for velocity in group.velocity],
         bonds=bonds,
         collisions=[colliding_pairs(entry, groups, bonds) for entry in scene["collisions"].values()],
-        forces=[_force(entry, groups, placed) for entry in scene["forces"].values()],
+        forces=[force for entry in scene["forces"].values() for force in _forces(entry, groups, placed)],
     )
 
 
-def _force(entry: Data, groups: Groups, placed: list[Vector]) -> Data:
-    force = dict(entry, atoms=select(entry["acts_on"], groups))
+def _forces(entry: Data, groups: Groups, placed: list[Vector]) -> list[Data]:
+    """Return a force with its atoms; a torque is one for each copy."""
     if entry["kind"] == "torque":
-        force["about_atoms"] = select(entry["about"], groups) if entry["about"] else force["atoms"]
+        turned, about = (select_by_copy(entry[key] or entry["acts_on"], groups) for key in ("acts_on", "about"))
+        n_copies = max(len(turned), len(about))
+        return [
+            dict(entry, atoms=turned[number % len(turned)], about_atoms=about[number % len(about)])
+            for number in range(n_copies)
+        ]
+    force = dict(entry, atoms=select(entry["acts_on"], groups))
     if entry["kind"] == "tether":
         squares = [square(sub(entry["target"], placed[atom])) for atom in force["atoms"]]
         force["rest_squared"] = [rest_squared(entry["rest"], initial) for initial in squares]
-    return force
+    return [force]
 
 
 def _bond_weight(square: float, r2: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import Any
 
 from support.oracle_shapes import Vector, place, square, sub
@@ -22,13 +23,23 @@ class Group:
         return len(self.position)
 
     @property
+    def n_copies(self) -> int:
+        """How many copies there are, itself counted."""
+        return math.prod(copies["count"] for copies in self.data["copies"])
+
+    @property
+    def each(self) -> int:
+        """The number of atoms of one copy."""
+        return len(self) // self.n_copies
+
+    @property
     def is_closed(self) -> bool:
         """Whether the last atom is next to the first."""
         return self.data["shape"] in ("ring", "polygon")
 
     def grid_place(self, index: int) -> tuple[int, ...]:
-        """Return where on its grid an atom stands, x first."""
-        place = []
+        """Return where on the grid of its copy an atom stands, x first."""
+        index, place = index % self.each, []
         for count in self.data["counts"]:
             place.append(index % count)
             index //= count
@@ -43,21 +54,49 @@ def select(expressions: tuple[str, ...], groups: Groups) -> list[int]:
     return sorted({atom for expression in expressions for atom in _select_one(expression, groups)})
 
 
+def select_by_copy(expressions: tuple[str, ...], groups: Groups) -> list[list[int]]:
+    """Return the atoms of each copy; what has none, or is one copy, goes with all of them."""
+    numbers = {copy for expression in expressions for copy in _copies_of(expression, groups)} or {0}
+    return [
+        sorted({a for text in expressions for a in _select_one(text, groups) if _goes_with(number, a, text, groups)})
+        for number in sorted(numbers)
+    ]
+
+
+def _copies_of(expression: str, groups: Groups) -> range:
+    """Return the numbers of the copies that an expression names each of; none where it does not."""
+    name = expression.partition("[")[0].strip()
+    n_copies = groups[name].n_copies if name in groups else 1
+    return range(n_copies) if n_copies > 1 else range(0)
+
+
+def _goes_with(number: int, atom: int, expression: str, groups: Groups) -> bool:
+    """Tell whether an atom that an expression names is of one copy, or of none."""
+    if not _copies_of(expression, groups):
+        return True
+    group = groups[expression.partition("[")[0].strip()]
+    return (atom - group.start) // group.each == number
+
+
 def _select_one(expression: str, groups: Groups) -> list[int]:
     name, _, inside = expression.replace(" ", "").rstrip("]").partition("[")
     if name == "all":
         return [atom for group in groups.values() for atom in range(group.start, group.start + len(group))]
+    name, _, copy = name.partition(".")
     group = groups[name]
     axes = [_axis(text) for text in inside.split(",")] if inside else [slice(None)]
     if len(axes) == 1:
-        chosen = set(_range(axes[0], len(group)))
-        return [group.start + index for index in range(len(group)) if index in chosen]
-    allowed = [set(_range(axis, count)) for axis, count in zip(axes, group.data["counts"], strict=True)]
-    return [
-        group.start + index
-        for index in range(len(group))
-        if all(place in places for place, places in zip(group.grid_place(index), allowed, strict=True))
-    ]
+        chosen = set(_range(axes[0], group.each))
+        of_copy = [index for index in range(group.each) if index in chosen]
+    else:
+        allowed = [set(_range(axis, count)) for axis, count in zip(axes, group.data["counts"], strict=True)]
+        of_copy = [
+            index
+            for index in range(group.each)
+            if all(place in places for place, places in zip(group.grid_place(index), allowed, strict=True))
+        ]
+    numbers = [int(copy)] if copy else range(group.n_copies)
+    return [group.start + number * group.each + index for number in numbers for index in of_copy]
 
 
 def _axis(text: str) -> int | slice:
@@ -78,15 +117,21 @@ def bound_pairs(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple
 
 def _pairs_of(entry: Data, groups: Groups, placed: list[Vector]) -> list[tuple[int, int]]:
     if entry.get("between"):
-        left, right = (select(side, groups) for side in entry["between"])
-        return _apply_rule(entry, list(itertools.product(left, right)), left, right, groups, placed)
+        left, right = (select_by_copy(side, groups) for side in entry["between"])
+        n_copies = max(len(left), len(right))
+        sides = zip((left * n_copies)[:n_copies], (right * n_copies)[:n_copies], strict=True)
+        return [
+            pair
+            for one, other in sides
+            for pair in _apply_rule(entry, list(itertools.product(one, other)), one, other, groups, placed)
+        ]
     found = []
     for expression in entry["within"]:
-        atoms = _select_one(expression, groups)
-        if entry["rule"] == "neighbour":
-            found += _neighbours(entry, atoms, expression, groups)
-        else:
-            found += _apply_rule(entry, list(itertools.combinations(atoms, 2)), atoms, atoms, groups, placed)
+        for atoms in select_by_copy((expression,), groups):
+            if entry["rule"] == "neighbour":
+                found += _neighbours(entry, atoms, expression, groups)
+            else:
+                found += _apply_rule(entry, list(itertools.combinations(atoms, 2)), atoms, atoms, groups, placed)
     return found
 
 
@@ -115,7 +160,8 @@ def _grid_square(i: int, k: int, groups: Groups) -> int:
 def _neighbours(entry: Data, atoms: list[int], expression: str, groups: Groups) -> list[tuple[int, int]]:
     closed = entry["closed"]
     if closed is None:
-        closed = expression in groups and groups[expression].is_closed
+        name = expression.partition(".")[0]
+        closed = name in groups and "[" not in expression and groups[name].is_closed
     found = []
     for (one, i), (other, k) in itertools.combinations(enumerate(atoms), 2):
         gap = other - one
@@ -128,8 +174,12 @@ def colliding_pairs(entry: Data, groups: Groups, bonds: list[list[tuple[int, int
     """Return the pairs of a collision declaration, sorted."""
     found: set[tuple[int, int]] = set()
     for expression in entry["within"] or ():
-        numbered = itertools.combinations(enumerate(_select_one(expression, groups)), 2)
-        found |= {(i, k) for (one, i), (other, k) in numbered if other - one >= (entry["min_gap"] or 1)}
+        copies = [list(enumerate(atoms)) for atoms in select_by_copy((expression,), groups)]
+        for numbered in copies:
+            pairs = itertools.combinations(numbered, 2)
+            found |= {(i, k) for (one, i), (other, k) in pairs if other - one >= (entry["min_gap"] or 1)}
+        for one_copy, other_copy in itertools.combinations(copies, 2):
+            found |= {(i, k) for _, i in one_copy for _, k in other_copy}
     sides = [select(side, groups) for side in entry["between"] or entry["among"] or ()]
     for left, right in itertools.combinations(sides, 2):
         found |= {(min(i, k), max(i, k)) for i in left for k in right if i != k}

@@ -10,7 +10,33 @@ Data = dict[str, Any]
 
 
 def place(group: Data) -> tuple[list[Vector], list[Vector]]:
-    """Return the initial positions and velocities of a group's atoms."""
+    """Return the initial positions and velocities of a group's atoms, copy after copy."""
+    position, velocity = _place_first(group)
+    for copies in group["copies"]:
+        moved = [_copy(position, velocity, copies, number) for number in range(copies["count"])]
+        position = [place for places, _ in moved for place in places]
+        velocity = [speed for _, speeds in moved for speed in speeds]
+    return position, velocity
+
+
+def _copy(
+    position: list[Vector], velocity: list[Vector], copies: Data, number: int
+) -> tuple[list[Vector], list[Vector]]:
+    """Return where the atoms of a copy start and how fast; number 0 is the group as it was."""
+    if number == 0:
+        return position, velocity
+    if copies["step"] is not None:
+        return [add(place, _times(number, copies["step"])) for place in position], velocity
+    origin = copies["through"] or (0.0, 0.0, 0.0)
+    each = 360.0 / copies["count"] if copies["degrees"] is None else copies["degrees"]
+    degrees = number * each
+    turned = [add(origin, _rotated(sub(place, origin), copies["axis"], degrees)) for place in position]
+    return turned, [_rotated(speed, copies["axis"], degrees) for speed in velocity]
+
+
+def _place_first(group: Data) -> tuple[list[Vector], list[Vector]]:
+    if group["shape"] == "string":
+        group = _as_steps(group)
     offsets = _offsets(group)
     for turn in group["rotate"]:
         offsets = [_rotated(offset, turn["axis"], turn["degrees"]) for offset in offsets]
@@ -25,6 +51,20 @@ def place(group: Data) -> tuple[list[Vector], list[Vector]]:
         turning = [cross(axis, offset) for offset in offsets]
         velocity = [add(v, (rate * x, rate * y, rate * z)) for v, (x, y, z) in zip(velocity, turning, strict=True)]
     return position, velocity
+
+
+def _as_steps(group: Data) -> Data:
+    """Say of a string where its middle is and how far its atoms are apart, however it was written."""
+    count, step, first, last = group["count"], group["step"], group["from_"], group["to"]
+    if count is None:
+        count = 1 + max(1, round(math.sqrt(square(sub(last, first))) / group["spacing"]))
+    if step is None:
+        x, y, z = sub(last, first)
+        step = (x / (count - 1), y / (count - 1), z / (count - 1))
+    centre = group["centre"] or (0.0, 0.0, 0.0)
+    if first is not None:
+        centre = add(first, _times((count - 1) / 2, step))
+    return {**group, "count": count, "step": step, "centre": centre}
 
 
 def _offsets(group: Data) -> list[Vector]:
@@ -51,6 +91,8 @@ def _offsets(group: Data) -> list[Vector]:
                 for y in range(ny)
                 for x in range(nx)
             ]
+        case "ball":
+            return _ball(group)
         case "atoms":
             middle = _centroid(list(group["positions"]))
             return [sub(position, middle) for position in group["positions"]]
@@ -61,6 +103,29 @@ def _on_circle(i: int, group: Data) -> Vector:
     angle = 2.0 * math.pi * i / group["count"]
     one, other = quantise(group["radius"] * math.cos(angle)), quantise(group["radius"] * math.sin(angle))
     return {"x": (0.0, one, other), "y": (one, 0.0, other), "z": (one, other, 0.0)}[group["axis"]]
+
+
+def _ball(group: Data) -> list[Vector]:
+    """A point, and spheres around it; a sphere is circles from its south pole to its north pole."""
+    radius, spacing = group["radius"], group["spacing"]
+    n_spheres = max(1, round(radius / spacing))
+    atoms = [] if group["hollow"] else [(0.0, 0.0, 0.0)]
+    for sphere in range(1, n_spheres + 1):
+        if group["hollow"] and sphere < n_spheres:
+            continue
+        size = radius * (sphere / n_spheres)
+        last = max(2, round(math.pi * (size / spacing)))
+        for circle in range(last + 1):
+            latitude = math.pi * circle / last
+            if circle in (0, last):
+                atoms.append((0.0, 0.0, size if circle else -size))
+                continue
+            wide, high = quantise(size * math.sin(latitude)), quantise(-size * math.cos(latitude))
+            on_circle = max(3, round(2.0 * math.pi * (wide / spacing)))
+            for i in range(on_circle):
+                turn = 2.0 * math.pi * i / on_circle
+                atoms.append((quantise(wide * math.cos(turn)), quantise(wide * math.sin(turn)), high))
+    return atoms
 
 
 def _polygon(group: Data) -> list[Vector]:

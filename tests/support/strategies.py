@@ -42,6 +42,20 @@ def groups() -> st.SearchStrategy[Data]:
     """Draw a group of any shape, placed, turned and moving."""
     shapes = [
         {"shape": st.just("string"), "count": st.integers(1, 7), "step": steps},
+        {"shape": st.just("string"), "count": st.integers(1, 7), "step": steps, "from": vectors},
+        {
+            "shape": st.just("string"),
+            "count": st.integers(2, 7),
+            "from": vectors,
+            "to": st.tuples(*[st.floats(5, 9)] * 3),
+        },
+        {
+            "shape": st.just("string"),
+            "spacing": st.floats(1, 4),
+            "from": vectors,
+            "to": st.tuples(*[st.floats(5, 7)] * 3),
+        },
+        {"shape": st.just("ball"), "radius": st.floats(0.5, 1.5), "spacing": st.floats(1, 3), "hollow": st.booleans()},
         {
             "shape": st.just("ring"),
             "count": st.integers(1, 8),
@@ -63,13 +77,32 @@ def groups() -> st.SearchStrategy[Data]:
         "rotate": turns | st.lists(turns, max_size=2),
         "velocity": small_vectors,
         "spin": st.fixed_dictionaries({"axis": axes, "rate": st.floats(-1, 1)}),
+        "copies": copies() | st.lists(copies(), max_size=2),
     }
-    return st.one_of([st.fixed_dictionaries(shape, optional=placing) for shape in shapes])
+    movable = {key: drawn for key, drawn in placing.items() if key != "centre"}
+    return st.one_of(
+        [st.fixed_dictionaries(shape, optional=movable if "from" in shape else placing) for shape in shapes]
+    )
+
+
+def copies() -> st.SearchStrategy[Data]:
+    """Draw copies along a line or about an axis."""
+    along = {"count": st.integers(1, 3), "step": vectors}
+    about = {"count": st.integers(1, 3), "axis": axes}
+    return st.fixed_dictionaries(along) | st.fixed_dictionaries(
+        about, optional={"through": vectors, "degrees": st.floats(-180, 180)}
+    )
+
+
+def is_copied(group: Data) -> bool:
+    """Tell whether a group has more than one copy."""
+    copies = group.get("copies", [])
+    return math.prod(each["count"] for each in ([copies] if isinstance(copies, dict) else copies)) > 1
 
 
 def selections(drawn: dict[str, Data]) -> st.SearchStrategy[Any]:
     """Draw a selection of one or more expressions."""
-    whole = st.sampled_from([*drawn, "all"])
+    whole = st.sampled_from([*drawn, "all", *(f"{name}.0" for name, group in drawn.items() if is_copied(group))])
     parts = st.tuples(st.sampled_from([*drawn]), st.sampled_from(["[0]", "[-1]", "[::2]", "[1:]", "[:3]"])).map("".join)
     grids = [name for name, group in drawn.items() if group["shape"] == "plane"]
     tiles = st.tuples(st.sampled_from(grids), st.sampled_from(["[0, :]", "[:, -1]", "[::2, 0]"])).map("".join)

@@ -434,3 +434,99 @@ def test_forces_keep_their_order_and_numbers() -> None:
     assert (turn.axis, turn.atoms.tolist(), turn.about.tolist()) == ((0, 0, 1), [1], [0, 1])
     assert isinstance(hang, TetherForce)
     assert hang.rest_squared.tolist() == [4, 29]
+
+
+FINGERS: dict[str, Any] = {
+    "finger": {"shape": "string", "from": [3, 0, 0], "to": [7, 0, 0], "count": 3, "copies": {"count": 3, "axis": "z"}},
+    "wheel": {"shape": "ring", "count": 4, "radius": 2, "centre": [0, 0, 9], "copies": {"count": 2, "step": [9, 0, 0]}},
+    "hub": atoms_at((0, 0, 9)),
+}
+"""Atoms 0–2, 3–5, 6–8; 9–12, 13–16; 17."""
+
+
+@pytest.mark.parametrize(
+    ("collisions", "n_pairs"),
+    [
+        ({"within": "finger"}, 36),
+        ({"within": "finger", "min_gap": 2}, 27 + 3),
+        ({"within": "finger.0"}, 3),
+        ({"within": "finger[::2]", "min_gap": 9}, 12),
+        ({"between": ["finger", "wheel"]}, 72),
+        ({"among": ["finger", "wheel"]}, 72),
+        ({"among": ["finger.0", "finger.1", "finger.2"]}, 27),
+    ],
+)
+def test_copies_collide_with_one_another(collisions: dict[str, Any], n_pairs: int) -> None:
+    """Only `min_gap` counts in each copy; groups collide as wholes."""
+    model, _ = compiled(FINGERS, collisions={"c": collisions})
+    assert n_collision_pairs(model.collisions[0]) == n_pairs
+
+
+def test_a_torque_turns_each_copy_by_itself() -> None:
+    forces = {
+        "each": {"kind": "torque", "acts_on": "wheel", "axis": "z", "magnitude": 2},
+        "one": {"kind": "torque", "acts_on": "wheel.1", "axis": "z", "magnitude": 2},
+        "about": {"kind": "torque", "acts_on": "wheel", "about": "hub", "axis": "z", "magnitude": 2},
+        "copies": {"kind": "torque", "acts_on": "finger[0]", "about": "finger[-1]", "axis": "z", "magnitude": 2},
+    }
+    model, _ = compiled(FINGERS, forces=forces)
+    turns = [
+        (force.origin.name, force.atoms.tolist(), force.about.tolist())
+        for force in model.forces
+        if isinstance(force, TorqueForce)
+    ]
+    first, second = [9, 10, 11, 12], [13, 14, 15, 16]
+    assert turns == [
+        ("each", first, first),
+        ("each", second, second),
+        ("one", second, second),
+        ("about", first, [17]),
+        ("about", second, [17]),
+        ("copies", [0], [2]),
+        ("copies", [3], [5]),
+        ("copies", [6], [8]),
+    ]
+
+
+def test_groups_with_different_numbers_of_copies_are_told_where_they_are_written() -> None:
+    bonds = {"b": {"between": ["finger", ["hub", "wheel[1]"]], "rule": "all-pairs"}}
+    assert mistakes(FINGERS, bonds=bonds) == [
+        "bonds.b.between.1.1: `finger` has 3 copies and `wheel[1]` has 2: copies of one number go together; "
+        "name the ones that are meant, such as `wheel.0[1]`"
+    ]
+
+
+def test_messages_name_atoms_of_copies_as_selections_do() -> None:
+    groups = {"dot": {**atoms_at((0, 0, 0)), "copies": {"count": 2, "step": [0, 0, 0]}}}
+    assert mistakes(groups, collisions={"c": {"within": "dot"}}) == [
+        "collisions.c: dot.0[0] and dot.1[0] are set to collide but start at the same place"
+    ]
+
+
+def test_more_copies_than_memory_are_told_before_any_is_made() -> None:
+    groups = {
+        "a": {**atoms_at((0, 0, 0)), "copies": [{"count": 10**9, "axis": "z"}, {"count": 10**6, "step": [1, 0, 0]}]}
+    }
+    (message,) = mistakes(groups)
+    assert "1,000,000,000,000,000 atoms need about" in message
+
+
+def test_thousands_of_triples_are_bound_and_left_out_in_little_room() -> None:
+    """30,000 atoms: one set of twins for each triple, and no pair of the fluid is listed."""
+    triple = {
+        **atoms_at((0, 0, 0), (1.5, 0, 0), (0, 1.5, 0)),
+        "copies": [
+            {"count": 10, "step": [3.6, 0, 0]},
+            {"count": 10, "step": [0, 3.6, 0]},
+            {"count": 100, "step": [0, 0, 2.1]},
+        ],
+    }
+    model, _ = compiled(
+        {"fluid": triple},
+        bonds={"triples": {"within": "fluid", "rule": "all-pairs"}},
+        collisions={"fluid": {"within": "fluid", "except_bound": True}},
+    )
+    (bonds,), (table,) = model.bonds, model.collisions
+    assert table.bound is not None
+    assert (bonds.first.size, table.bound.n_sets, table.bound.sets_near.size) == (30_000, 10_000, 10_000)
+    assert n_collision_pairs(table) == 30_000 * 29_999 // 2 - 30_000

@@ -96,3 +96,67 @@ def test_desired_distances_are_squared_without_a_root() -> None:
     )
     assert model.bonds[0].rest_squared.tolist() == [(0.1 * 0.1 + 0.2 * 0.2) + 0.3 * 0.3]  # as placed, before jitter
     assert model.bonds[1].rest_squared.tolist() == [0.7 * 0.7]
+
+
+COPIED: dict[str, Any] = {
+    "hub": atoms_at((0, 0, 0), (0, 0, 1)),
+    "spoke": {"shape": "string", "from": [1, 0, 0], "to": [3, 0, 0], "count": 3, "copies": {"count": 3, "axis": "z"}},
+    "rim": {
+        "shape": "ring",
+        "count": 4,
+        "radius": 1,
+        "axis": "y",
+        "centre": [5, 0, 0],
+        "copies": {"count": 3, "axis": "z"},
+    },
+    "tile": {
+        "shape": "plane",
+        "counts": [2, 2],
+        "step_x": [1, 0, 0],
+        "step_y": [0, 1, 0],
+        "centre": [0, 0, 9],
+        "copies": {"count": 2, "step": [1.5, 0, 0]},
+    },
+}
+"""Atoms 0–1; 2–4, 5–7, 8–10; 11–14, 15–18, 19–22; 23–26, 27–30."""
+
+
+@pytest.mark.parametrize(
+    ("bonds", "expected"),
+    [
+        (
+            {"within": "spoke", "rule": "all-pairs"},
+            [(2, 3), (2, 4), (3, 4), (5, 6), (5, 7), (6, 7), (8, 9), (8, 10), (9, 10)],
+        ),
+        ({"within": "spoke.1", "rule": "neighbour"}, [(5, 6), (6, 7)]),
+        ({"within": "spoke[1:]", "rule": "neighbour"}, [(3, 4), (6, 7), (9, 10)]),
+        ({"within": "spoke", "rule": "pairs", "pairs": [[2, 0]]}, [(2, 4), (5, 7), (8, 10)]),
+        ({"within": "rim.2", "rule": "neighbour"}, [(19, 20), (19, 22), (20, 21), (21, 22)]),
+        (
+            {"within": "rim", "rule": "neighbour", "closed": False, "reach": 9},
+            [(a + i, a + k) for a in (11, 15, 19) for i in range(4) for k in range(i + 1, 4)],
+        ),
+        (
+            {"within": "tile", "rule": "distance-threshold", "threshold": 1.2},
+            [(23, 24), (23, 25), (24, 26), (25, 26), (27, 28), (27, 29), (28, 30), (29, 30)],
+        ),
+        (
+            {"within": "tile[:, 0]", "rule": "distance-threshold", "threshold": 2, "metric": "grid"},
+            [(23, 24), (27, 28)],
+        ),
+        ({"between": ["hub[0]", "spoke[0]"], "rule": "all-pairs"}, [(0, 2), (0, 5), (0, 8)]),
+        ({"between": ["spoke[-1]", "rim[0]"], "rule": "all-pairs"}, [(4, 11), (7, 15), (10, 19)]),
+        ({"between": ["rim", "spoke"], "rule": "pairs", "pairs": [[3, 1]]}, [(3, 14), (6, 18), (9, 22)]),
+        ({"between": ["spoke", "hub"], "rule": "distance-threshold", "threshold": 1.1}, [(0, 2), (0, 5), (0, 8)]),
+        ({"between": ["spoke.0[-1]", "spoke.1[-1]"], "rule": "all-pairs"}, [(4, 7)]),
+        (
+            {"between": [["hub[1]", "rim[2]"], "spoke[1]"], "rule": "all-pairs"},
+            [(1, 3), (1, 6), (1, 9), (3, 13), (6, 17), (9, 21)],
+        ),
+        ({"between": ["spoke", "spoke"], "rule": "pairs", "pairs": [[0, 2]]}, [(2, 4), (5, 7), (8, 10)]),
+    ],
+)
+def test_bonds_go_copy_by_copy(bonds: dict[str, Any], expected: list[tuple[int, int]]) -> None:
+    model, _ = compiled(COPIED, bonds={"b": bonds})
+    (table,) = model.bonds
+    assert list(zip(table.first.tolist(), table.second.tolist(), strict=True)) == expected

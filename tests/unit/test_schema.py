@@ -174,13 +174,14 @@ def test_every_field_of_every_declaration_is_described() -> None:
     table = field_docs()
     assert set(table) == set(exported)
     for name, declaration in exported.items():
-        assert set(table[name]) == set(declaration.model_fields)
+        assert set(table[name]) == set(declaration.fields_by_key())
         assert all(doc.description.endswith(".") and doc.type for doc in table[name].values()), name
 
 
 def test_types_and_defaults_in_words() -> None:
     table = field_docs()
     shown = {key: (doc.type, doc.default) for key, doc in table["RingGroup"].items()}
+    copies = "{count, step, axis, through, degrees}"
     assert shown == {
         "shape": ("ring", None),
         "count": ("whole number ≥ 1", None),
@@ -190,11 +191,13 @@ def test_types_and_defaults_in_words() -> None:
         "rotate": ("{axis, degrees} or [{axis, degrees}, …]", ""),
         "velocity": ("[x, y, z]", "[0.0, 0.0, 0.0]"),
         "spin": ("{axis, rate}", ""),
+        "copies": (f"{copies} or [{copies}, …]", ""),
         "color": ("color", ""),
     }
     assert table["Damping"]["coefficient"].type == "number ≥ 0 and ≤ 1"
     assert table["ListedBonds"]["pairs"].type == "[[i, k], …]"
     assert table["Spin"]["axis"].type == "x, y, z or [x, y, z]"
+    assert table["StringGroup"]["from"].type == "[x, y, z]"
     assert table["Damping"]["acts_on"].default == '["all"]'
 
 
@@ -271,5 +274,5 @@ def test_a_kind_is_known_everywhere_by_being_in_the_union(toy: None) -> None:
 
 
 def test_words_of_a_section() -> None:
-    assert list(sections()["groups"].words) == ["string", "ring", "polygon", "plane", "block", "atoms"]
+    assert list(sections()["groups"].words) == ["string", "ring", "polygon", "plane", "block", "ball", "atoms"]
     assert sections()["collisions"].words == {}

@@ -4,7 +4,9 @@ from atomsim.scene.language.base import Declaration, Rest, Vector
 from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
 from atomsim.scene.language.groups import (
     AtomsGroup,
+    BallGroup,
     BlockGroup,
+    Copies,
     Group,
     PlaneGroup,
     PolygonGroup,
@@ -27,10 +29,12 @@ from atomsim.scene.language.silence import Silence
 __all__ = [
     "AllPairsBonds",
     "AtomsGroup",
+    "BallGroup",
     "BlockGroup",
     "Bonds",
     "Camera",
     "Collisions",
+    "Copies",
     "Damping",
     "Declaration",
     "DistanceThresholdBonds",

@@ -14,6 +14,7 @@ from pydantic import (
     WithJsonSchema,
     model_validator,
 )
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.css_colors import CSS_COLORS
@@ -31,7 +32,23 @@ class Declaration(BaseModel):
         """A key that is known and null counts as not written: that is how a scene deletes what it extends."""
         if not isinstance(value, dict):
             return value
-        return {key: inner for key, inner in value.items() if inner is not None or key not in cls.model_fields}
+        known = cls.fields_by_key()
+        return {key: inner for key, inner in value.items() if inner is not None or key not in known}
+
+    @classmethod
+    def fields_by_key(cls) -> dict[str, FieldInfo]:
+        """Return the fields by the keys under which a scene writes them: `from` is no name in Python."""
+        return {field.alias or name: field for name, field in cls.model_fields.items()}
+
+
+def require_one(declaration: Declaration, *keys: str) -> None:
+    """Refuse a declaration that does not say exactly one of the keys."""
+    given = [key for key in keys if getattr(declaration, key) is not None]
+    if len(given) != 1:
+        names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
+        found = " and ".join(f"`{key}`" for key in given) if given else "none"
+        context = {"names": names, "found": found}
+        raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)
 
 
 Number = Annotated[float, Field(allow_inf_nan=False)]

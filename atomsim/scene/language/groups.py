@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import (
     Axis,
@@ -17,6 +18,7 @@ from atomsim.scene.language.base import (
     Positive,
     Vector,
     as_tuple,
+    require_one,
 )
 
 
@@ -42,6 +44,38 @@ Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(as_tuple), OneOrList
 """A turn, or a list of turns."""
 
 
+def _refuse(is_wrong: bool, message: str) -> None:
+    """Refuse keys that make no sense together."""
+    if is_wrong:
+        raise PydanticCustomError("together", message)
+
+
+class Copies(Declaration):
+    """Copies of a group about an axis or along a line, each one a part with a number of its own: `finger.0`."""
+
+    count: Count
+    """How many there are, with the group as written, which is number 0."""
+    step: Vector | None = None
+    """Along a line: from each copy to the next [length]."""
+    axis: Axis | None = None
+    """About an axis: its direction, x, y, z or [x, y, z] (right-handed); velocities turn with the copies."""
+    through: Vector | None = None
+    """With `axis`: a point that the axis goes through [length]; by default [0, 0, 0]."""
+    degrees: Number | None = None
+    """With `axis`: angle from each copy to the next [degrees]; by default 360 / count, all the way around."""
+
+    @model_validator(mode="after")
+    def _check_way(self) -> Copies:
+        require_one(self, "step", "axis")
+        is_about_none = self.axis is None and (self.through is not None or self.degrees is not None)
+        _refuse(is_about_none, "`through` and `degrees` go with `axis`")
+        return self
+
+
+CopiesList = Annotated[tuple[Copies, ...], BeforeValidator(as_tuple), OneOrList()]
+"""Copies, or a list of copies: copies of the copies before."""
+
+
 class GroupBase(Declaration):
     """What every group has besides its shape."""
 
@@ -53,19 +87,43 @@ class GroupBase(Declaration):
     """Initial velocity of every atom [length per unit of time]."""
     spin: Spin | None = None
     """Initial rotation {axis, rate} about the centroid."""
+    copies: CopiesList = ()
+    """Copies {count, step} along a line or {count, axis} about an axis, or a list of these: copies of copies."""
     color: Color | None = None
     """Colour in pictures: a CSS name or #rrggbb; by default each group gets its own. `render.colors` covers it."""
 
 
 class StringGroup(GroupBase):
-    """Atoms along a straight line: rods and threads."""
+    """Atoms along a straight line: rods and threads.
+
+    Say how it runs, by `step` or `to`, and how many atoms it has, by `count` or, between `from` and `to`, `spacing`.
+    """
 
     shape: Literal["string"]
     """Atoms along a straight line, numbered along it."""
-    count: Count
+    count: Count | None = None
     """Number of atoms."""
-    step: Vector
+    step: Vector | None = None
     """From each atom to the next [length]."""
+    from_: Annotated[Vector | None, Field(alias="from")] = None
+    """The place of the first atom [length], in place of `centre`."""
+    to: Vector | None = None
+    """The place of the last atom [length]; goes with `from`, in place of `step`."""
+    spacing: Positive | None = None
+    """Between `from` and `to`: distance between neighbours [length], made to fit a whole number of times."""
+    centre: Vector | None = None  # type: ignore[assignment]  # `from` may say where it is
+    """Where the centroid of the string goes [length]; by default [0, 0, 0], unless `from` says where it begins."""
+
+    @model_validator(mode="after")
+    def _check_way(self) -> StringGroup:
+        require_one(self, "step", "to")
+        require_one(self, "count", "spacing")
+        _refuse(self.to is not None and self.from_ is None, "`to` goes with `from`")
+        _refuse(self.spacing is not None and self.to is None, "`spacing` goes with `from` and `to`")
+        _refuse(self.from_ is not None and self.centre is not None, "`centre` and `from` both say where; write one")
+        _refuse(self.to is not None and self.to == self.from_, "`from` and `to` are the same place")
+        _refuse(self.to is not None and self.count == 1, "from here to there it takes a `count` of 2 or more")
+        return self
 
 
 class RingGroup(GroupBase):
@@ -116,6 +174,19 @@ class BlockGroup(GroupBase):
     """Distance between neighbours along each axis [length]."""
 
 
+class BallGroup(GroupBase):
+    """Atoms in a ball, or on its surface: balls, heads, loads."""
+
+    shape: Literal["ball"]
+    """Atoms on spheres one inside the other, from the one in the middle outwards, each from below to above, z up."""
+    radius: Positive
+    """Radius of the outermost sphere, on which atoms have their centres [length]."""
+    spacing: Positive
+    """Distance between neighbours, nearly [length]: between spheres, and on each of them."""
+    hollow: bool = False
+    """Whether there are atoms on the outermost sphere only."""
+
+
 class AtomsGroup(GroupBase):
     """Atoms at written positions."""
 
@@ -128,6 +199,6 @@ class AtomsGroup(GroupBase):
 
 
 Group = Annotated[
-    StringGroup | RingGroup | PolygonGroup | PlaneGroup | BlockGroup | AtomsGroup,
+    StringGroup | RingGroup | PolygonGroup | PlaneGroup | BlockGroup | BallGroup | AtomsGroup,
     Field(discriminator="shape"),
 ]

@@ -7,17 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from atomsim.scene.language.base import Count, Declaration, Pair, Positive, Rest, Round, Selection
-
-
-def _require_one(declaration: Declaration, *keys: str) -> None:
-    """Refuse a declaration that does not say exactly one of the keys."""
-    given = [key for key in keys if getattr(declaration, key) is not None]
-    if len(given) != 1:
-        names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
-        found = " and ".join(f"`{key}`" for key in given) if given else "none"
-        context = {"names": names, "found": found}
-        raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)
+from atomsim.scene.language.base import Count, Declaration, Pair, Positive, Rest, Round, Selection, require_one
 
 
 AtomPair = Annotated[tuple[Round, Round], Field(strict=False, title="[i, k]")]
@@ -41,7 +31,7 @@ class BondBetweenBase(BondBase):
 
     @model_validator(mode="after")
     def _check_where(self) -> BondBetweenBase:
-        _require_one(self, "within", "between")
+        require_one(self, "within", "between")
         return self
 
 
@@ -125,7 +115,7 @@ class Collisions(Declaration):
 
     @model_validator(mode="after")
     def _check_where(self) -> Collisions:
-        _require_one(self, "within", "between", "among")
+        require_one(self, "within", "between", "among")
         if self.min_gap is not None and self.within is None:
             raise PydanticCustomError("min_gap", "`min_gap` goes with `within` only")
         return self

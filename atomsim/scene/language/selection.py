@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from atomsim.scene.mistakes.wording import readable
 
-_EXPRESSION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_-]*)\s*(?:\[([^\[\]]*)\]\s*)?", re.ASCII)
+_EXPRESSION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_-]*)(?:\.([0-9]{1,9}))?\s*(?:\[([^\[\]]*)\]\s*)?", re.ASCII)
 _NUMBER = re.compile(r"\s*([+-]?[0-9]{1,18})\s*", re.ASCII)
 
 
@@ -17,38 +17,41 @@ class SelectionSyntaxError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class SelectionPart:
-    """One parsed expression: a group name (or `all`) and an index or slice per axis; no axes means all atoms."""
+    """One parsed expression: a group name (or `all`) and an index or slice per axis; no axes means all atoms.
+
+    `copy` is the number of one copy of the group; None means each of them.
+    """
 
     group: str
     axes: tuple[int | slice, ...]
+    copy: int | None = None
 
 
 def parse_selection(text: str) -> SelectionPart:
     """Read one selection expression.
 
     Args:
-        text: `ring`, `ring[3]`, `ring[-1]`, `ring[0:10]`, `ring[::2]`, `floor[0, :]`, `all`.
+        text: `ring`, `ring[3]`, `ring[-1]`, `ring[0:10]`, `ring[::2]`, `floor[0, :]`, `finger.2`, `finger.2[0]`, `all`.
 
     Returns:
-        The group's name and its index or slice per axis, x first.
+        The group's name, its index or slice per axis, x first, and the copy.
 
     Raises:
         SelectionSyntaxError: the text is no selection.
 
     >>> parse_selection("floor[0, 2:]")
-    SelectionPart(group='floor', axes=(0, slice(2, None, None)))
+    SelectionPart(group='floor', axes=(0, slice(2, None, None)), copy=None)
     """
     match = _EXPRESSION.fullmatch(text)
     if match is None:
         raise SelectionSyntaxError(
             f"`{readable(text)}` is no selection; write `ring`, `ring[3]`, `ring[0:10]` or `all`"
         )
-    group, inside = match.groups()
-    if inside is None:
-        return SelectionPart(group, ())
-    if group == "all":
+    group, copy, inside = match.groups()
+    if group == "all" and (inside, copy) != (None, None):
         raise SelectionSyntaxError("`all` takes no index; name a group to select part of it")
-    return SelectionPart(group, tuple(_parse_axis(axis, text) for axis in inside.split(",")))
+    axes = tuple(_parse_axis(axis, text) for axis in inside.split(",")) if inside is not None else ()
+    return SelectionPart(group, axes, int(copy) if copy is not None else None)
 
 
 def _parse_axis(axis: str, text: str) -> int | slice:

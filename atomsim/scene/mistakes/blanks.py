@@ -46,7 +46,7 @@ def _is_single(path: KeyPath, data: dict[str, Any]) -> bool:
     key, declaration = str(path[-1]), declaration_at(path[:-1], data)
     if declaration is None:
         return path[:-1] == ("render", "colors")
-    field = declaration.model_fields.get(key)
+    field = declaration.fields_by_key().get(key)
     return field is not None and not field.is_required() and not is_mapping(declaration, key)
 
 

@@ -31,7 +31,7 @@ from atomsim.scene.source import KeyPath, Source
 _NO_WORD = ("union_tag_not_found", "union_tag_invalid")
 """Findings of a declaration whose kind is not known; pydantic looks no further into it."""
 
-_SAYS_ALL = ("code", "min_gap", "push_rounds", "zero_axis", "selection_syntax")
+_SAYS_ALL = ("together", "code", "min_gap", "push_rounds", "zero_axis", "selection_syntax")
 """Findings of the language itself that say in their own words what they got."""
 
 _NEEDS = {
@@ -221,5 +221,5 @@ def _keys(path: KeyPath, data: Any) -> str:
 def _indentation(path: KeyPath) -> str:
     """Say where a key belongs that stands where a name is expected."""
     section = sections().get(str(path[0]))
-    is_key = any(path[-1] in declaration.model_fields for declaration in section.declarations) if section else False
+    is_key = any(path[-1] in declaration.fields_by_key() for declaration in section.declarations) if section else False
     return "; indent it under the name" if len(path) == 2 and is_key else ""

@@ -55,7 +55,7 @@ def written_word(declared: dict[str, Any], section: Section) -> Written | None:
     assert section.key is not None  # else there is nothing to choose
     if section.key in declared:
         return Written(section.key, _word(declared[section.key], section))
-    known = {key for declaration in section.declarations for key in declaration.model_fields}
+    known = {key for declaration in section.declarations for key in declaration.fields_by_key()}
     unknown = list(islice((key for key in declared if key not in known), MOST_LOOKED_AT))
     for key in unknown:
         if _before_colon(key) == section.key:
@@ -105,7 +105,7 @@ def unknown_key(path: KeyPath, data: dict[str, Any], source: Source) -> str:
     close = meant_key(key, keys)
     chosen = discriminator(declaration) if declaration is not None else None
     words = sections()[str(path[0])].words if chosen is not None else {}
-    owners = [word for word, other in words.items() if key in other.model_fields]
+    owners = [word for word, other in words.items() if key in other.fields_by_key()]
     mark, reopened = source.mark(path), source.mark(path[:-1])
     if mark.file != reopened.file and not is_setting(mark) and (owners or close is None):
         return _unknown(key, f"to drop what is extended, write `{readable(key)}: null` in {reopened.file}")
@@ -135,7 +135,7 @@ def _number_around(key: str, declared: dict[str, Any], declaration: type[Declara
         return None
     before = list(declared)[: list(declared).index(key)]
     number = next((other for other in reversed(before) if declared[other] is not None), None)
-    is_list = declaration is not None and number in declaration.model_fields and form(declaration, number)[0] == "["
+    is_list = declaration is not None and number in declaration.fields_by_key() and form(declaration, number)[0] == "["
     return around(key, in_list=is_list)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -49,6 +50,17 @@ def test_the_document_survives_json_and_gives_the_same_header() -> None:
     assert again.groups == run.groups
     assert again.origins == run.origins
     assert list(document(run)) == list(FIELDS)
+
+
+def test_copies_of_a_group_are_told_in_its_name() -> None:
+    run = header()
+    left, right = run.groups
+    copied = replace(run, groups=(replace(left, n_copies=left.stop - left.start), right))
+    values = document(copied)
+    assert values["group_names"] == ["left × 4", "right"]
+    assert header_from(values, run.bond, run.bond_table).groups == copied.groups
+    with pytest.raises(DamageError, match="group_names"):
+        header_from({**values, "group_names": ["left × 3", "right"]}, run.bond, run.bond_table)
 
 
 def test_names_that_utf_8_cannot_write_are_made_writable() -> None:
