@@ -9,7 +9,6 @@ from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import Count, Declaration, Pair, Positive, Rest, Round, Selection, require_one
 
-
 AtomPair = Annotated[tuple[Round, Round], Field(strict=False, title="[i, k]")]
 """Two places in selections, counted from 0."""
 
