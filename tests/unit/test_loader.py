@@ -250,7 +250,8 @@ def test_a_misspelt_name_in_a_scene_that_extends(folder: Path) -> None:
         "forces: {wieght: {impulse: [0, 0, 0]}}\n",
     )
     assert refusal("top.yaml").split("\n") == [
-        "top.yaml:2:10: groups.rign.shape: missing: string, ring, polygon, plane, block, ball or atoms; did you mean `ring`?",
+        "top.yaml:2:10: groups.rign.shape: missing: string, ring, polygon, plane, block, ball or atoms; "
+        "did you mean `ring`?",
         "top.yaml:2:30: groups.new.shape: missing: string, ring, polygon, plane, block, ball or atoms",
         "top.yaml:3:14: collisions.gripp: say exactly one of `within`, `between` or `among` (got none); "
         "did you mean `grip`?",
