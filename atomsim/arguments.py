@@ -63,6 +63,53 @@ def path(name: str, value: object) -> Path:
     raise refused(name, "the name of a file", value)
 
 
+def paths(name: str, value: Any) -> list[Path]:
+    """Return the names of files as paths; one alone need not be in a list.
+
+    Raises:
+        InputError: there is none, or one that no file can have.
+    """
+    if isinstance(value, str | os.PathLike):
+        return [path(name, value)]
+    return [path(name, part) for part in sequence(name, value, "the name of a file, or a list of such names")]
+
+
+def whole_pair(name: str, value: Any, needs: str) -> tuple[int, int]:
+    """Return two whole numbers.
+
+    Raises:
+        InputError: they are not two, or not whole.
+    """
+    try:
+        first, second = (operator.index(part) for part in value)
+    except (TypeError, ValueError):
+        raise refused(name, needs, value) from None
+    return first, second
+
+
+def real_pair(name: str, value: Any, needs: str) -> tuple[float, float]:
+    """Return two numbers.
+
+    Raises:
+        InputError: they are not two, or no numbers.
+    """
+    try:
+        first, second = (float(part) for part in value)
+    except (TypeError, ValueError):
+        raise refused(name, needs, value) from None
+    return first, second
+
+
+def function(name: str, value: object) -> None:
+    """Make sure that an argument, if there is one, can be called: else it would show only after long work.
+
+    Raises:
+        InputError: it cannot.
+    """
+    if value is not None and not callable(value):
+        raise refused(name, "a function", value)
+
+
 def instance(name: str, value: object, kind: type[Kind], needs: str) -> Kind:
     """Return a value that is of a kind.
 

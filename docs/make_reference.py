@@ -121,6 +121,19 @@ round.
 A golden holds the digest of every recorded round and a few frames in full. It is a small text file, to be committed
 beside the scene; `LOG.md` in the same folder keeps the reasons.
 """,
+    "atomsim render": """\
+`--rounds` takes one or more of these, with commas between:
+
+| words | rounds |
+| --- | --- |
+| `250` | round 250, or the recorded one that is nearest to it, the earlier of two |
+| `0-2000:100` | 0, 100, 200, … up to 2000, each as above; if fewer are recorded, all recorded ones from 0 to 2000 |
+| `0-2000` | every recorded round from 0 to 2000 |
+| `2000-` | every recorded round from 2000 on; likewise `2000-:100` |
+| `-20` | the last twenty recorded rounds, or all if there are fewer |
+
+The order is kept. A round that the run did not reach is an error, also as the end of a span.
+""",
     "atomsim check": """\
 The word after a number of bonds says how they are computed. All three ways give the same bits; they differ in speed.
 

@@ -43,8 +43,9 @@ _INK, _FAINT, _ALARM = "#1d1d1f", "#56565c", "#b22222"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """A picture with the line below it that says what it shows, and one that says what is wrong with it."""
+    """A picture of a round with the line below it that says what it shows, and one that says what is wrong."""
 
+    round_index: int
     picture: Pixels
     caption: str
     notice: str

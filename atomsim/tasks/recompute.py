@@ -11,7 +11,6 @@ import numpy as np
 
 from atomsim.compiler import compile_scene
 from atomsim.compiler.selections import lay_out
-from atomsim.compiler.shapes import count_atoms
 from atomsim.core.model import Model, State
 from atomsim.errors import InputError, SceneError
 from atomsim.scene import LoadedScene, loads
@@ -32,7 +31,7 @@ def scene_inside(header: Header, path: Path) -> LoadedScene:
     try:
         return loads(header.scene, header.scene_name)
     except SceneError as error:
-        raise _broken(header, path, error) from None
+        raise broken(header, path, error.problems[0]) from None
 
 
 def laid_out_inside(header: Header, path: Path) -> LoadedScene:
@@ -47,6 +46,8 @@ def laid_out_inside(header: Header, path: Path) -> LoadedScene:
     """
     loaded = scene_inside(header, path)
     spans = [(name, layout.start, layout.stop) for name, layout in lay_out(loaded.scene).items()]
+    if spans[-1][-1] != header.n_atoms:
+        raise _misleading(header, path, "atoms")
     if spans != [(group.name, group.start, group.stop) for group in header.groups]:
         raise _misleading(header, path, "groups")
     return loaded
@@ -62,14 +63,11 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
     Raises:
         InputError: it is no valid scene, or not that of the frames.
     """
-    loaded = scene_inside(header, path)
-    n_atoms = sum(count_atoms(group) for group in loaded.scene.groups.values())
-    if n_atoms != header.n_atoms:  # asked before any are made: a liar may ask for as many as memory holds
-        raise _misleading(header, path, "atoms")
+    loaded = laid_out_inside(header, path)  # before any atoms are made: a liar may ask for as many as memory holds
     try:
         model, state = compile_scene(loaded)
     except SceneError as error:
-        raise _broken(header, path, error) from None
+        raise broken(header, path, error.problems[0]) from None
     recompiled = Header.of(
         model,
         scene_text=header.scene,
@@ -83,8 +81,9 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
     return loaded, model, state
 
 
-def _broken(header: Header, path: Path, error: SceneError) -> InputError:
-    reason = f"the scene inside: {error.problems[0]}"
+def broken(header: Header, path: Path, problem: object) -> InputError:
+    """Return the error for a trajectory whose scene nobody could have run, because of a problem in it."""
+    reason = f"the scene inside: {problem}"
     return _later(header, path, reason) or InputError(f"{path}: damaged, or not a trajectory of atomsim ({reason})")
 
 
@@ -103,9 +102,7 @@ def _later(header: Header, path: Path, reason: str) -> InputError | None:
 
 
 def _differing(one: Header, other: Header) -> str | None:
-    """Say in what two headers of one scene differ, if they do; rounds may, they are asked for with each run."""
-    if [(group.name, group.start) for group in one.groups] != [(group.name, group.start) for group in other.groups]:
-        return "groups"
+    """Say in what two headers of the same groups differ, if they do; rounds may, they are asked for with each run."""
     if not (np.array_equal(one.bond, other.bond) and np.array_equal(one.bond_table, other.bond_table)):
         return "bonds"
     if one.time_step != other.time_step:

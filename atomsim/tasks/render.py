@@ -1,19 +1,26 @@
-"""Which frames of trajectories a picture shows and from where, as their scenes say; knows not how they are drawn."""
+"""Pictures of trajectories: which frames they show and from where, as the user or else the scene says."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
+from atomsim.arguments import function, path, paths, real_pair, whole_pair
 from atomsim.compiler.colors import atom_color, rgb
-from atomsim.drawing import Row, View, compose, frames_to
+from atomsim.compiler.selections import SelectionError
+from atomsim.core.model import Floats, Indices
+from atomsim.drawing import Report, Row, View, compose, frames_to
 from atomsim.errors import InputError, Notice
-from atomsim.tasks.recompute import compile_inside
-from atomsim.trajectory import Trajectory
+from atomsim.scene.language import Scene
+from atomsim.tasks.recompute import broken, laid_out_inside
+from atomsim.tasks.rounds import Latest, Wish, chosen, wishes
+from atomsim.trajectory import Frames, Trajectory
+
+Paths: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
 Hear: TypeAlias = Callable[[Notice], None]
 
@@ -22,84 +29,106 @@ N_FRAMES = 6
 
 
 def render(
-    trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    trajectories: Paths,
     picture: str | os.PathLike[str],
     *,
-    rounds: Sequence[int] | None = None,
+    rounds: str | Sequence[int] | None = None,
     camera: tuple[float, float] | None = None,
     size: tuple[int, int] | None = None,
     notice: Hear | None = None,
+    report: Report | None = None,
 ) -> None:
     """Draw a strip: frames side by side, a row per trajectory. A picture of that name is replaced.
+
+    The scenes inside the trajectories are read, but not compiled.
 
     Args:
         trajectories: one trajectory or several.
         picture: the file to write; its extension tells the format: png, jpg, webp, pdf or svg.
-        rounds: the rounds to show; by default what each scene says, else evenly spread ones.
+        rounds: the rounds to show, as numbers or as a text such as on the command line, `"0-2000:100"`; by default
+            what each scene says, else evenly spread ones.
         camera: azimuth and elevation of the viewer [degrees], instead of what the scenes say.
         size: width and height of a frame [pixels].
         notice: hears what a user should know about where the frames come from.
+        report: hears how many pictures of how many are drawn, at the start and after each.
 
     Raises:
         InputError: a trajectory, a round, a size or a name that will not do.
         RunError: the picture cannot be written.
     """
-    with ExitStack() as opened:
-        found = _opened(trajectories, opened, notice)
-        compose([_row(trajectory, rounds, camera, every=False) for trajectory in found], Path(picture), size)
+    out, wish = path("picture", picture), _Wish.of(rounds, camera, size)
+    with _opened(trajectories, notice, report) as found:
+        compose([_row(trajectory, wish, every=False) for trajectory in found], out, wish.size, report)
 
 
 def render_frames(
-    trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    trajectories: Paths,
     folder: str | os.PathLike[str],
     *,
-    rounds: Sequence[int] | None = None,
+    rounds: str | Sequence[int] | None = None,
     camera: tuple[float, float] | None = None,
     size: tuple[int, int] | None = None,
     notice: Hear | None = None,
+    report: Report | None = None,
 ) -> list[Path]:
     """Draw every frame, or those of some rounds, as a PNG of its own; see `render`.
+
+    However long the trajectories are, one frame at a time is in memory.
 
     Returns:
         The files, in order.
     """
+    into, wish = path("folder", folder), _Wish.of(rounds, camera, size)
+    with _opened(trajectories, notice, report) as found:
+        return frames_to([_row(trajectory, wish, every=True) for trajectory in found], into, wish.size, report)
+
+
+@dataclass(frozen=True, slots=True)
+class _Wish:
+    """What the user asks for, checked; None is left to the scenes."""
+
+    rounds: tuple[Wish, ...] | None
+    camera: tuple[float, float] | None
+    size: tuple[int, int] | None
+
+    @classmethod
+    def of(cls, rounds: Any, camera: Any, size: Any) -> _Wish:
+        """Check the arguments of a function."""
+        return cls(
+            None if rounds is None else wishes(rounds),
+            None if camera is None else real_pair("camera", camera, "azimuth and elevation, such as (30, 20)"),
+            None if size is None else whole_pair("size", size, "width and height in pixels, such as (640, 480)"),
+        )
+
+
+@contextmanager
+def _opened(trajectories: Paths, notice: Hear | None, report: Report | None) -> Iterator[list[Trajectory]]:
+    """Open one trajectory or several, and say what should be known about them."""
+    function("notice", notice)
+    function("report", report)
     with ExitStack() as opened:
-        found = _opened(trajectories, opened, notice)
-        rows = [_row(trajectory, rounds, camera, every=True) for trajectory in found]
-        return frames_to(rows, Path(folder), size)
+        found = [opened.enter_context(Trajectory(file)) for file in paths("trajectories", trajectories)]
+        for message in (message for trajectory in found for message in trajectory.notices()):
+            if notice is not None:
+                notice(message)
+        yield found
 
 
-def _opened(
-    trajectories: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], opened: ExitStack, notice: Hear | None
-) -> list[Trajectory]:
-    """Open one trajectory or several, until the stack is left."""
-    paths = [trajectories] if isinstance(trajectories, (str, os.PathLike)) else trajectories
-    found = [opened.enter_context(Trajectory(path)) for path in paths]
-    for message in (message for trajectory in found for message in trajectory.notices()):
-        if notice is not None:
-            notice(message)
-    return found
-
-
-def _row(
-    trajectory: Trajectory, rounds: Sequence[int] | None, camera: tuple[float, float] | None, *, every: bool
-) -> Row:
+def _row(trajectory: Trajectory, wish: _Wish, *, every: bool) -> Row:
     """Choose the frames of one trajectory and from where they are seen."""
-    inside, _, _ = compile_inside(trajectory.header, trajectory.path)  # compiled only to be sure that it fits
-    scene = inside.scene
-    chosen = scene.render
-    wanted = trajectory.rounds.tolist() if rounds is None and every else rounds
-    asked = _asked(trajectory, wanted, chosen.rounds)
-    view = View(**chosen.camera.model_dump())
-    if camera is not None:
-        view = replace(view, azimuth=camera[0], elevation=camera[1])
+    scene = laid_out_inside(trajectory.header, trajectory.path).scene
+    rounds, places = _frames(trajectory, wish.rounds, scene.render.rounds, every=every)
+    color = _color(scene, trajectory)
+    view = View(**scene.render.camera.model_dump())
+    if wish.camera is not None:
+        view = replace(view, azimuth=wish.camera[0], elevation=wish.camera[1])
     return Row(
         title=_title(trajectory),
-        frames=tuple(trajectory[_nearest(trajectory, round_index)] for round_index in asked),
-        color=atom_color(scene),
+        frames=Frames(trajectory, places.tolist()),
+        rounds=tuple(rounds.tolist()),
+        paint=lambda frame: color,
         view=view,
-        background=rgb(chosen.background),
-        asked=asked,
+        background=rgb(scene.render.background),
         start=trajectory[0].position,
     )
 
@@ -112,22 +141,30 @@ def _title(trajectory: Trajectory) -> str:
     return title
 
 
-def _asked(trajectory: Trajectory, rounds: Sequence[int] | None, chosen: Sequence[int] | None) -> tuple[int, ...]:
-    """Return the rounds to show: as asked for, else as the scene says as far as the run went, else evenly spread."""
-    last = int(trajectory.rounds[-1])
-    if rounds is not None:
-        beyond = [round_index for round_index in rounds if round_index > last]
-        if beyond:
-            raise InputError(f"{trajectory.path}: there is no round {beyond[0]}; it ends at round {last}")
-        return tuple(rounds)
-    if chosen is not None:
-        reached = tuple(round_index for round_index in chosen if round_index <= last)
-        return reached if len(reached) == len(chosen) or last in reached else (*reached, last)
+def _color(scene: Scene, trajectory: Trajectory) -> Floats:
+    """Return the colours of the atoms, (n_atoms, 3) float64; a scene that was never compiled may name atoms amiss."""
+    try:
+        return atom_color(scene)
+    except SelectionError as error:
+        raise broken(trajectory.header, trajectory.path, f"render.colors: {error}") from None
+
+
+def _frames(
+    trajectory: Trajectory, asked: tuple[Wish, ...] | None, said: tuple[int, ...] | None, *, every: bool
+) -> tuple[Indices, Indices]:
+    """Return rounds and the places of their frames: as asked for, else all of them or those that the scene says."""
     recorded = trajectory.rounds
+    try:
+        return chosen(asked or ((Latest(len(recorded)),) if every else _by_default(recorded, said)), recorded)
+    except InputError as error:
+        raise InputError(f"{trajectory.path}: {error}") from None
+
+
+def _by_default(recorded: Indices, said: tuple[int, ...] | None) -> tuple[int, ...]:
+    """Return what the scene says as far as the run went, else evenly spread rounds."""
+    last = int(recorded[-1])
+    if said is not None:
+        reached = tuple(round_index for round_index in said if round_index <= last)
+        return reached if len(reached) == len(said) or last in reached else (*reached, last)
     places = sorted({place * (len(recorded) - 1) // (N_FRAMES - 1) for place in range(N_FRAMES)})
-    return tuple(int(recorded[place]) for place in places)
-
-
-def _nearest(trajectory: Trajectory, round_index: int) -> int:
-    """Return the index of the frame recorded nearest to a round, the earlier of two."""
-    return int(abs(trajectory.rounds - round_index).argmin())
+    return tuple(recorded[places].tolist())

@@ -56,7 +56,7 @@ class _Source(Protocol):
 class Frames(Sequence[Frame]):
     """Some frames of a trajectory, each read when it is asked for; a slice of them is such a sequence again."""
 
-    def __init__(self, trajectory: Trajectory, indices: range) -> None:
+    def __init__(self, trajectory: Trajectory, indices: Sequence[int]) -> None:
         self._trajectory = trajectory
         self._indices = indices
 

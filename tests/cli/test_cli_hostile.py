@@ -160,6 +160,10 @@ LIES: dict[str, tuple[dict[str, Any], str]] = {
         {"scene": SCENE + "record_every: 7\n"},
         "damaged, or made to mislead: the scene inside has other rounds to record than the frames",
     ),
+    "a color for atoms that are not there": (
+        {"scene": SCENE + "render: {colors: {'left[9]': red}}\n"},
+        "damaged, or not a trajectory of atomsim (the scene inside: ",
+    ),
     "a scene that does not compile": (
         {"scene": SCENE.replace("within: left", 'within: "left[9]"')},
         "damaged, or not a trajectory of atomsim (the scene inside: s.yaml:8:10: bonds.left.within: `left[9]` is out",
@@ -167,12 +171,16 @@ LIES: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
+DRAWN_ALL_THE_SAME = ("other bonds", "another time step", "other rounds to record", "a scene that does not compile")
+"""Lies about what a picture does not show: nobody compiles a stranger's scene to draw it."""
+
+
 @pytest.mark.parametrize("name", LIES)
 def test_a_scene_inside_that_lies(cli, name):
     changes, message = LIES[name]
     record(Path("out.h5"), **changes)
     before = Path("out.h5").read_bytes()
-    for command in ("render", "verify", "resume"):
+    for command in ("verify", "resume", *(["render"] if name not in DRAWN_ALL_THE_SAME else [])):
         result = cli(*COMMANDS[command])
         assert (result.code, result.out) == (2, ""), command
         assert result.err.startswith(f"out.h5: {message}"), (command, result.err)
@@ -180,6 +188,16 @@ def test_a_scene_inside_that_lies(cli, name):
     assert cli("show", "out.h5").code == 0
     assert Path("out.h5").read_bytes() == before
     assert sorted(path.name for path in Path().iterdir()) == ["out.h5", "scenes"]
+
+
+@pytest.mark.parametrize("name", DRAWN_ALL_THE_SAME)
+def test_a_picture_believes_only_what_it_shows(cli, name, monkeypatch):
+    def refuse(*_):
+        raise AssertionError("compiled")
+
+    record(Path("out.h5"), **LIES[name][0])
+    monkeypatch.setattr("atomsim.compiler.compile._Compiler.compile", refuse)
+    assert cli(*COMMANDS["render"]).code == 0
 
 
 def test_a_frame_with_a_forged_digest_is_found_by_computing_it_again(cli):

@@ -1,8 +1,11 @@
 """Strips and single frames as files: their pixels, their bytes, their words, and what is refused."""
 
 import base64
+import gc
 import io
 import re
+import weakref
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib as mpl
@@ -19,6 +22,7 @@ from atomsim.drawing.strip import Row, compose, frames_to
 from atomsim.errors import InputError
 
 SIZE = (96, 72)
+BROWN = np.tile([0.7, 0.2, 0.1], (12, 1))
 NOTHING_MEASURED = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
 
 
@@ -31,7 +35,14 @@ def frame(round_index, shift=0.0):
 
 def row(title="A ring", n_frames=3, **options):
     frames = tuple(frame(50 * index, index) for index in range(n_frames))
-    return Row(title, frames, np.tile([0.7, 0.2, 0.1], (12, 1)), View(10, 40), **options)
+    asked = tuple(50 * index for index in range(n_frames))
+    return Row(
+        title, **{"frames": frames, "rounds": asked, "paint": lambda frame: BROWN, "view": View(10, 40), **options}
+    )
+
+
+def pictures(row, size=SIZE):
+    return [panel.picture for panel in row.panels(size)]
 
 
 def pixels_of(path):
@@ -47,7 +58,7 @@ def test_frames_are_pasted_pixel_by_pixel(tmp_path):
     strip = pixels_of(out)
     assert strip.shape == (layout.height, layout.width, 3)
     for number, shown in enumerate(rows):
-        for index, picture in enumerate(shown.pictures(SIZE)):
+        for index, picture in enumerate(pictures(shown)):
             left, top = layout.corner(number, index)
             assert (strip[top : top + 72, left : left + 96] == picture).all()
 
@@ -87,6 +98,43 @@ def test_pictures_of_ours_are_known_in_every_format(tmp_path):
     assert not is_our_picture(tmp_path)
 
 
+def test_progress_is_told_at_the_start_and_after_every_picture(tmp_path):
+    heard = []
+    compose([row(), row(n_frames=1)], tmp_path / "strip.png", SIZE, lambda *count: heard.append(count))
+    assert heard == [(number, 4) for number in range(5)]
+    heard.clear()
+
+    def hear(n_drawn, n_frames):
+        assert len(list((tmp_path / "film").iterdir())) == n_drawn
+        heard.append((n_drawn, n_frames))
+
+    frames_to([row()], tmp_path / "film", SIZE, hear)
+    assert heard == [(number, 3) for number in range(4)]
+
+
+def test_one_frame_at_a_time_is_in_memory(tmp_path):
+    """However long a trajectory is: frames are made when they are asked for, and let go."""
+    made = []
+
+    class Film(Sequence):
+        def __len__(self):
+            return 12
+
+        def __getitem__(self, index):
+            new = frame(range(12)[index], index)
+            made.append(weakref.ref(new.position))
+            return new
+
+    def hear(n_drawn, n_frames):
+        gc.collect()
+        alive.append(sum(reference() is not None for reference in made))
+
+    alive = []
+    frames_to([row(frames=Film(), rounds=tuple(range(12)))], tmp_path, SIZE, hear)
+    assert len(made) > 24
+    assert max(alive) <= 2
+
+
 def test_a_png_holds_no_version_of_any_program(tmp_path):
     compose([row()], tmp_path / "strip.png", SIZE)
     assert b"atplotlib" not in (tmp_path / "strip.png").read_bytes()
@@ -97,7 +145,7 @@ def test_lossless_formats_hold_the_exact_frames(tmp_path):
     left, top = Layout(SIZE, (1,), (True,), False).corner(0, 0)
     compose([shown], tmp_path / "strip.webp", SIZE)
     compose([shown], tmp_path / "strip.svg", SIZE)
-    [picture] = shown.pictures(SIZE)
+    [picture] = pictures(shown)
     assert (pixels_of(tmp_path / "strip.webp")[top : top + 72, left : left + 96] == picture).all()
     [encoded] = re.findall(r'"data:image/png;base64,([^"]+)"', (tmp_path / "strip.svg").read_text())
     assert (pixels_of(io.BytesIO(base64.b64decode(encoded)))[::-1] == picture).all()  # SVG's y points up here
@@ -110,23 +158,31 @@ def test_other_formats_are_what_they_say(tmp_path):
 
 
 def test_captions_tell_the_round_and_what_was_asked():
-    assert row().captions() == ["round 0", "round 50", "round 100"]
-    assert row(asked=(0, 52, 100)).captions() == ["round 0", "round 50 (nearest to 52)", "round 100"]
+    captions = [panel.caption for panel in row(rounds=(0, 52, 100)).panels(SIZE)]
+    assert captions == ["round 0", "round 50 (nearest to 52)", "round 100"]
 
 
 def test_atoms_that_cannot_be_drawn_are_counted(tmp_path):
     lost = frame(7)
     lost.position[0, 0], lost.position[1, 2], lost.position[5, 1] = np.nan, np.inf, 1e12
-    shown = Row("", (frame(0), lost), np.ones((12, 3)))
-    assert shown.notices() == ["", "3 atoms not drawable"]
+    shown = Row("", (frame(0), lost), (0, 7), lambda frame: BROWN)
+    assert [panel.notice for panel in shown.panels(SIZE)] == ["", "3 atoms not drawable"]
     compose([shown], tmp_path / "strip.png", SIZE)
     assert len(pixels_of(tmp_path / "strip.png")) == Layout(SIZE, (2,), (False,), True).height
 
 
+def test_every_frame_has_the_colors_of_its_round():
+    """As a measure that changes would have them."""
+    shown = row(paint=lambda frame: BROWN if frame.round_index else BROWN[:, ::-1])
+    first, second, _ = pictures(shown)
+    assert first[:, :, 2].min() > first[:, :, 0].min()
+    assert second[:, :, 0].min() > second[:, :, 2].min()
+
+
 def test_all_frames_of_a_row_have_the_same_framing():
     shown = row()
-    first, _, last = shown.pictures(SIZE)
-    alone = [next(Row("", (one,), shown.color, shown.view).pictures(SIZE)) for one in shown.frames]
+    first, _, last = pictures(shown)
+    alone = [pictures(Row("", (one,), (0,), shown.paint, shown.view))[0] for one in shown.frames]
     assert (alone[0] == alone[2]).all()
     assert (first != last).any()
 
@@ -143,7 +199,7 @@ def test_any_title_can_be_written(tmp_path, title):
 )
 def test_a_caption_that_does_not_fit_is_shortened_or_left_out(tmp_path, size, captions):
     whole = ["round 0 (nearest to 1)", "round 50 (nearest to 51)"]
-    compose([row("", n_frames=2, asked=(1, 51))], tmp_path / "strip.svg", size)
+    compose([row("", n_frames=2, rounds=(1, 51))], tmp_path / "strip.svg", size)
     words = re.findall(r"<!-- (.+?) -->", (tmp_path / "strip.svg").read_text(encoding="utf-8"))
     assert len(words) == captions
     assert words == whole[:captions] or all(
@@ -154,7 +210,7 @@ def test_a_caption_that_does_not_fit_is_shortened_or_left_out(tmp_path, size, ca
 def test_single_frames(tmp_path):
     files = frames_to([row()], tmp_path / "new" / "folder", SIZE)
     assert [file.name for file in files] == ["round-000.png", "round-050.png", "round-100.png"]
-    for file, picture in zip(files, row().pictures(SIZE), strict=True):
+    for file, picture in zip(files, pictures(row()), strict=True):
         assert file.parent == tmp_path / "new" / "folder"
         assert (pixels_of(file) == picture).all()
 

@@ -18,8 +18,9 @@ def small_strip(folder: Path) -> None:
     position = np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 0.5]])
     nothing = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)
     frame = Frame(State(0, position, np.zeros((2, 3))), 0.0, "", nothing)
+    row = Row("Two balls, $x^2$, 環", (frame,), (0,), lambda frame: np.ones((2, 3)))
     for extension in EXTENSIONS:
-        compose([Row("Two balls, $x^2$, 環", (frame,), np.ones((2, 3)))], folder / f"strip.{extension}", (64, 48))
+        compose([row], folder / f"strip.{extension}", (64, 48))
 
 
 if __name__ == "__main__":

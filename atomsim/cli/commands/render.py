@@ -7,7 +7,7 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from atomsim.cli.options import file_to_write, output, rounds_in
+from atomsim.cli.options import file_to_write, output
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
@@ -33,7 +33,12 @@ def render(
     trajectories: Annotated[list[Path], typer.Argument(metavar="OUT", help="Trajectories, one row each.")],
     output: Output = None,
     rounds: Annotated[
-        str | None, typer.Option(metavar="0,250,...", help="The rounds to show, instead of what the scene says.")
+        str | None,
+        typer.Option(
+            metavar="0,250,...",
+            help="The rounds to show, instead of what the scene says; 0-2000:100 is every hundredth from 0 to 2000, "
+            "0-2000 every recorded one, and -20 the last twenty recorded.",
+        ),
     ] = None,
     camera: Annotated[
         str | None, typer.Option(metavar="AZ,EL", help="Direction and height of the viewer [degrees].")
@@ -58,7 +63,7 @@ def render(
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
     if frames is not None:
         written = pictures.render_frames(
-            trajectories, frames, rounds=rounds_in(rounds), camera=angles, size=pixels, notice=_notice
+            trajectories, frames, rounds=rounds, camera=angles, size=pixels, notice=_notice
         )
         say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
@@ -67,7 +72,7 @@ def render(
     is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
     if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
         raise InputError(f"{picture} exists and atomsim did not draw it", Remedy("replace"))
-    pictures.render(trajectories, picture, rounds=rounds_in(rounds), camera=angles, size=pixels, notice=_notice)
+    pictures.render(trajectories, picture, rounds=rounds, camera=angles, size=pixels, notice=_notice)
     say(str(picture))
 
 
