@@ -71,7 +71,6 @@ def describe_trajectory(trajectory: Trajectory) -> list[str]:
     """Return what a trajectory holds, where it came from and how it ended."""
     header, rounds = trajectory.header, trajectory.rounds
     overrides = (f"--set {override}" for override in header.overrides)
-    versions = header.versions
     lines = [
         f"{trajectory.path}: {header.title}" if header.title else str(trajectory.path),
         _line("scene", header.scene_name, overrides),
@@ -80,7 +79,11 @@ def describe_trajectory(trajectory: Trajectory) -> list[str]:
         _line("frames", f"{len(trajectory):,}, round {rounds[0]} to {rounds[-1]} of {header.rounds}", ()),
         _line("time step", f"τ = {header.time_step:g}", ()),
         _line("ended", trajectory.end.kind, trajectory.end.report.splitlines()),
-        _line("made with", f"atomsim {versions.program}, NumPy {versions.numpy}, Python {versions.python}", ()),
+        _line(
+            "made with",
+            f"atomsim {header.program_version}, NumPy {header.numpy_version}, Python {header.python_version}",
+            (),
+        ),
         _line("digest", f"{trajectory.digests[-1]} (round {rounds[-1]})", ()),
         "",
         f"  {'':<28}{'first frame':>14}{'last frame':>14}",

@@ -12,7 +12,6 @@ import numpy as np
 from atomsim.compiler import checks
 from atomsim.compiler.checks import Complaint
 from atomsim.compiler.coincident import Pairs, coincident_among, coincident_pairs
-from atomsim.compiler.colors import group_colors
 from atomsim.compiler.pairs import RuleError, expand
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections, lay_out, place_of
 from atomsim.compiler.shapes import place, unit
@@ -117,10 +116,9 @@ class _Compiler:
         return model, State(0, _read_only(self._position), _read_only(velocity))
 
     def _spans(self, layouts: dict[str, GroupLayout]) -> tuple[GroupSpan, ...]:
-        """Give every group its place, colour and origin."""
-        colors = group_colors(self._scene)
+        """Give every group its place and origin."""
         return tuple(
-            GroupSpan(name, layout.start, layout.stop, colors[name], self._origin("groups", name), layout.n_copies)
+            GroupSpan(name, layout.start, layout.stop, self._origin("groups", name), layout.n_copies)
             for name, layout in layouts.items()
         )
 

@@ -31,12 +31,11 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class GroupSpan:
-    """The consecutive atoms of one group, copy after copy: start ≤ atom < stop. `color` is `#rrggbb`."""
+    """The consecutive atoms of one group, copy after copy: start ≤ atom < stop."""
 
     name: str
     start: int
     stop: int
-    color: str
     origin: Origin
     n_copies: int = 1
 

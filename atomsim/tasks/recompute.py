@@ -70,6 +70,7 @@ def compile_inside(header: Header, path: Path) -> tuple[LoadedScene, Model, Stat
         raise broken(header, path, error.problems[0]) from None
     recompiled = Header.of(
         model,
+        group_color=header.group_color,
         scene_text=header.scene,
         scene_name=header.scene_name,
         rounds=header.rounds,
@@ -94,10 +95,10 @@ def _misleading(header: Header, path: Path, what: str) -> InputError:
 
 def _later(header: Header, path: Path, reason: str) -> InputError | None:
     """Return what is wrong with a scene of a later version of the language; None if it is of this one or an earlier."""
-    if not header.versions.is_later:
+    if not header.is_later:
         return None
     return InputError(
-        f"{path}: written by atomsim {header.versions.program}, this is {__version__}: a later one is needed ({reason})"
+        f"{path}: written by atomsim {header.program_version}, this is {__version__}: a later one is needed ({reason})"
     )
 
 

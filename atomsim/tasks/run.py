@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from atomsim import arguments
+from atomsim.compiler.colors import group_colors
 from atomsim.core.backend import Backend
 from atomsim.core.diagnosis.tunnelling import SpeedWatch
 from atomsim.core.free_memory import readable_bytes
@@ -95,6 +96,7 @@ def run(
                 warn(str(found))
     header = Header.of(
         prepared.model,
+        group_color=tuple(group_colors(scene.scene).values()),
         scene_text=scene.source.text,
         scene_name=scene.source.name,
         overrides=scene.source.overrides,
@@ -145,8 +147,8 @@ def resume(
     with StoppedRun(path, rounds) as stopped:
         header = stopped.header
         prepared = prepare_inside(header, path, header.rounds)
-        if warn is not None and header.versions.is_later:
-            warn(str(later_version(path, header.versions)))
+        if warn is not None and header.is_later:
+            warn(str(later_version(path, header)))
         if scene is not None:
             _require_same(prepared.loaded, scene, path)
         _require_disk(path, header)
@@ -169,7 +171,7 @@ def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:
 
 def _require_disk(path: Path, header: Header) -> None:
     """Refuse a run whose frames do not fit on the disk; while the file is built they are there twice."""
-    needed = 2 * trajectory_bytes(header.n_atoms, header.rounds, header.record_every, header.memory)
+    needed = 2 * trajectory_bytes(header.n_atoms, header.rounds, header.record_every, header.layout)
     folder = behind(path.absolute()).parent
     if not folder.is_dir():
         return  # the recorder says so better

@@ -1,9 +1,10 @@
 """Trajectories: recording a run and reading it back; knows no scene, and nothing of how a run comes about."""
 
-from atomsim.trajectory.header import End, Header, count_frames, trajectory_bytes
+from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import journal_path
 from atomsim.trajectory.reader import Frames, Trajectory, later_version
 from atomsim.trajectory.recorder import Recorder, check_target, recover
+from atomsim.trajectory.rows import count_frames, trajectory_bytes
 from atomsim.trajectory.stopped import StoppedRun
 
 __all__ = [

@@ -17,7 +17,7 @@ from atomsim.core.model import Floats, Frame, Indices, State
 from atomsim.errors import InputError, Notice, Remedy
 from atomsim.trajectory.foreign import HDF5_SIGNATURE, N_BYTES, require_hdf5
 from atomsim.trajectory.guard import DamageError, first_bytes, reading
-from atomsim.trajectory.header import End, Header, Versions
+from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import HEAD, journal_path
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
@@ -35,11 +35,11 @@ def is_ours(path: Path) -> bool:
     return b"atomsim" in start if (answer := is_ours(path)) is None else answer
 
 
-def later_version(path: Path, versions: Versions) -> Notice:
+def later_version(path: Path, header: Header) -> Notice:
     """Return what to know of a trajectory that a later version of the program wrote."""
     return Notice(
-        f"{path}: written by atomsim {versions.program}, this is {__version__}: what the two compute may differ, and "
-        "what is new in the file is not read"
+        f"{path}: written by atomsim {header.program_version}, this is {__version__}: what the two compute may differ, "
+        "and what is new in the file is not read"
     )
 
 
@@ -191,9 +191,8 @@ class Trajectory(Sequence[Frame]):
     def notices(self) -> list[Notice]:
         """Return what a user should know about where the frames come from; empty for a finished file alone."""
         notices = []
-        written_by = self.header.versions
-        if written_by.is_later:
-            notices.append(later_version(self.path, written_by))
+        if self.header.is_later:
+            notices.append(later_version(self.path, self.header))
         if self.from_journal:
             notices.append(
                 Notice(
@@ -208,7 +207,7 @@ class Trajectory(Sequence[Frame]):
                     (Remedy("go on", self.path),),
                 )
             )
-        if self.lost_bytes and not written_by.is_later:
+        if self.lost_bytes and not self.header.is_later:
             torn = f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out"
             notices.append(Notice(torn))
         return notices

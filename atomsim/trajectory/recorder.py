@@ -50,7 +50,7 @@ class Recorder:
         self.state = state
         self._writer = writer
         self._last_round = -1 if state is None else state.round_index
-        dtype = row_dtype(header.n_atoms, header.memory)
+        dtype = row_dtype(header.n_atoms, header.layout)
         self._block = np.empty(max(1, BLOCK_BYTES // dtype.itemsize), dtype)
         self._n_waiting = 0
         self._is_open = True

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,22 +14,29 @@ from atomsim.core.memory import EMPTY, Layout, Memory
 from atomsim.core.model import Floats, Frame, Observables, State
 from atomsim.trajectory.guard import DamageError
 
+_COLUMNS: Mapping[str, tuple[tuple[int, ...], Callable[[Any], Any]]] = {
+    "float": ((), float),
+    "int": ((), int),
+    "Floats": ((3,), np.copy),
+}
+"""The shape of an observable of each type in a file, where all are float64, and how it is read again."""
+
+OBSERVABLES: Mapping[str, Callable[[Any], Any]] = {
+    field.name: _COLUMNS[str(field.type)][1] for field in dataclasses.fields(Observables)
+}
+"""The observables by name, in the order of `Observables`, each with what reads it."""
+
 SERIES = np.dtype(
     [
         ("round", "<i8"),
         ("digest", "S64"),
-        ("kinetic_energy", "<f8"),
-        ("potential_energy_bonds", "<f8"),
-        ("potential_energy_collisions", "<f8"),
-        ("momentum", "<f8", (3,)),
-        ("angular_momentum", "<f8", (3,)),
-        ("contacts", "<f8"),
+        *((field.name, "<f8", _COLUMNS[str(field.type)][0]) for field in dataclasses.fields(Observables)),
     ]
 )
 """What is known of a frame besides its atoms."""
 
-OBSERVABLES: tuple[str, ...] = SERIES.names[2:]  # type: ignore[index]
-"""The names of the observables, as in `Observables`."""
+_FILE_BYTES_PER_FRAME = 104
+"""About what a frame takes in a finished file besides its row."""
 
 Series: TypeAlias = NDArray[np.void]
 """An array of dtype `SERIES`, (n_frames,)."""
@@ -40,6 +49,16 @@ def row_dtype(n_atoms: int, layout: Layout = ()) -> np.dtype[np.void]:
     parts: list[Any] = [("series", SERIES), ("position", "<f8", (n_atoms, 3)), ("velocity", "<f8", (n_atoms, 3))]
     memory = [(array.name, array.dtype, array.shape) for array in layout]
     return np.dtype([*parts, ("memory", memory)] if memory else parts)
+
+
+def count_frames(rounds: int, record_every: int) -> int:
+    """Return how many frames a run keeps that nothing stops: the first, those `record_every` rounds apart, the last."""
+    return (rounds - 1) // record_every + 2
+
+
+def trajectory_bytes(n_atoms: int, rounds: int, record_every: int, layout: Layout = ()) -> int:
+    """Return about how large the trajectory of a run becomes, without compression."""
+    return count_frames(rounds, record_every) * (row_dtype(n_atoms, layout).itemsize + _FILE_BYTES_PER_FRAME)
 
 
 def fill(row: Any, frame: Frame) -> None:
@@ -97,14 +116,7 @@ def frame_of(series: Any, state: State, time_step: float) -> Frame:
         state=state,
         time=state.round_index * time_step,
         digest=series["digest"].decode(),
-        observables=Observables(
-            kinetic_energy=float(series["kinetic_energy"]),
-            potential_energy_bonds=float(series["potential_energy_bonds"]),
-            potential_energy_collisions=float(series["potential_energy_collisions"]),
-            momentum=series["momentum"].copy(),
-            angular_momentum=series["angular_momentum"].copy(),
-            contacts=int(series["contacts"]),
-        ),
+        observables=Observables(**{name: read(series[name]) for name, read in OBSERVABLES.items()}),
     )
 
 

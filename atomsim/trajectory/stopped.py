@@ -141,7 +141,7 @@ class _Finished:
         """Write the file back into a journal, complete before it appears, and return what writes on in that."""
         self._writer = writer = JournalWriter.begin(journal_path(self._path), self.header, self._stamp)
         try:
-            row = np.empty(1, row_dtype(self.header.n_atoms, self.header.memory))
+            row = np.empty(1, row_dtype(self.header.n_atoms, self.header.layout))
             for frame in self._frames:
                 fill(row[0], frame)
                 writer.frames(row)

@@ -50,7 +50,9 @@ def record(path: Path, scene: str = SCENE, *, finish: bool = True, **changes: An
     """Record a run of a scene, with other things in the header than the truth."""
     loaded = loads(SCENE)
     model, state = compile_scene(loaded)
-    header = Header.of(model, scene_text=scene, scene_name="s.yaml", rounds=30, record_every=10)
+    header = Header.of(
+        model, group_color=["#000000"] * 2, scene_text=scene, scene_name="s.yaml", rounds=30, record_every=10
+    )
     with Recorder.begin(path, replace(header, **changes)) as recorder:
         for frame in simulate(model, state, 30, 10):
             recorder.append(frame)
@@ -232,7 +234,9 @@ def test_a_frame_with_a_forged_digest_is_found_by_computing_it_again(cli):
 def test_frames_left_out_or_put_in_are_found(cli, rounds, first):
     loaded = loads(SCENE)
     model, state = compile_scene(loaded)
-    header = Header.of(model, scene_text=SCENE, scene_name="s.yaml", rounds=30, record_every=10)
+    header = Header.of(
+        model, group_color=["#000000"] * 2, scene_text=SCENE, scene_name="s.yaml", rounds=30, record_every=10
+    )
     with Recorder.begin("out.h5", header) as recorder:
         for frame in simulate(model, state, 30, 5):
             if frame.round_index in rounds:

@@ -188,7 +188,14 @@ def test_titles_do_not_command_the_terminal(cli):
     inside = load("scenes/rods.yaml")
     model, state = compile_scene(inside)
     model = replace(model, title="\x1b[31mred\x07 alert")
-    header = Header.of(model, scene_text=inside.source.text, scene_name="\x9b2Jrods", rounds=10, record_every=10)
+    header = Header.of(
+        model,
+        group_color=["#000000"] * len(model.groups),
+        scene_text=inside.source.text,
+        scene_name="\x9b2Jrods",
+        rounds=10,
+        record_every=10,
+    )
     with Recorder.begin("out.h5", header) as recorder:
         for frame in simulate(model, state, 10, 10):
             recorder.append(frame)

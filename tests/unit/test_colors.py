@@ -6,7 +6,7 @@ import pytest
 from support.running import atoms_at, scene_of
 
 from atomsim.compiler import compile_scene
-from atomsim.compiler.colors import PALETTE, atom_color
+from atomsim.compiler.colors import PALETTE, atom_color, group_colors
 from atomsim.errors import SceneError
 from atomsim.scene import LoadedScene
 from atomsim.scene.language.css_colors import CSS_COLORS
@@ -39,8 +39,17 @@ def test_colors_of_selections_cover_groups_and_each_other():
     ],
 )
 def test_a_group_is_written_down_in_the_color_of_its_atoms(colors, expected):
-    model, _ = compile_scene(LoadedScene(scene_of(GROUPS, render={"colors": colors})))
-    assert [group.color for group in model.groups] == expected
+    assert list(group_colors(scene_of(GROUPS, render={"colors": colors})).values()) == expected
+
+
+def test_colors_come_from_the_picture_then_the_group_then_the_palette():
+    groups = {
+        "a": atoms_at((0, 0, 0), color="SteelBlue"),
+        "b": atoms_at((0, 0, 0), color="#F0a"),
+        "c": atoms_at((0, 0, 0)),
+    }
+    scene = scene_of(groups, render={"colors": {"a": "red"}})
+    assert group_colors(scene) == {"a": "#ff0000", "b": "#ff00aa", "c": PALETTE[2]}
 
 
 def test_a_color_for_atoms_that_do_not_exist_is_a_mistake():

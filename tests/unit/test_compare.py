@@ -13,7 +13,7 @@ from atomsim.core.model import Frame, GroupSpan, Observables, Origin, State
 from atomsim.tasks.compare import first_difference
 
 GROUPS = [
-    GroupSpan(name, start, stop, "#000000", Origin("groups", name, "a.yaml", 1))
+    GroupSpan(name, start, stop, Origin("groups", name, "a.yaml", 1))
     for name, start, stop in (("left", 0, 2), ("right", 2, 5))
 ]
 NOTHING_MEASURED = Observables(0.0, 0.0, 0.0, np.zeros(3), np.zeros(3), 0)

@@ -14,7 +14,6 @@ import pytest
 from support.running import atoms_at, compiled, scene_of
 
 from atomsim.compiler import compile_scene, room
-from atomsim.compiler.colors import PALETTE
 from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
 from atomsim.core.pairs import bonded, near
 from atomsim.core.pairs.collisions import n_collision_pairs
@@ -378,12 +377,8 @@ def test_state_and_tables_are_read_only() -> None:
             array[0, 0] = 1.0
 
 
-def test_colors_come_from_the_picture_then_the_group_then_the_palette() -> None:
-    model, _ = compiled(
-        {"a": atoms_at((0, 0, 0), color="SteelBlue"), "b": atoms_at((0, 0, 0), color="#F0a"), "c": atoms_at((0, 0, 0))},
-        render={"colors": {"a": "red"}},
-    )
-    assert [group.color for group in model.groups] == ["#ff0000", "#ff00aa", PALETTE[2]]
+def test_an_atom_knows_its_group() -> None:
+    model, _ = compiled({name: atoms_at((0, 0, 0)) for name in "abc"})
     assert [model.group_of(atom).name for atom in range(3)] == ["a", "b", "c"]
 
 

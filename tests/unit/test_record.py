@@ -16,7 +16,6 @@ from atomsim.errors import InputError, RunError, SceneError
 from atomsim.scene import load
 from atomsim.tasks.run import resume, run
 from atomsim.trajectory import End, Header, Recorder
-from atomsim.trajectory.header import Versions
 
 
 class Killed(BaseException):
@@ -84,12 +83,13 @@ def written_by(version: str, path: Path, **changes: str) -> Path:
     model, state = compile_scene(scene)
     header = Header.of(
         model,
+        group_color=["#000000"] * len(model.groups),
         scene_text=changes.get("scene", scene.source.text),
         scene_name="threads.yaml",
         rounds=20,
         record_every=scene.scene.record_every,
     )
-    header = replace(header, versions=replace(Versions.here(), program=version))
+    header = replace(header, program_version=version)
     with Recorder.begin(path, header) as recorder:
         for frame in simulate(model, state, 20, scene.scene.record_every):
             recorder.append(frame)

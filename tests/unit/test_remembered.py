@@ -36,7 +36,15 @@ def frames(rounds: int = ROUNDS, state: State | None = None, record_every: int =
 
 def header(rounds: int = ROUNDS, *, compress: bool = False) -> Header:
     model, _ = remembering()
-    return Header.of(model, scene_text="-", scene_name="-", rounds=rounds, record_every=5, compress=compress)
+    return Header.of(
+        model,
+        group_color=["#000000"] * len(model.groups),
+        scene_text="-",
+        scene_name="-",
+        rounds=rounds,
+        record_every=5,
+        compress=compress,
+    )
 
 
 def recorded(path: Path, run: Header, *, stop_after: int | None = None) -> Path:
@@ -107,7 +115,7 @@ def test_the_digest_covers_the_memory_after_the_atoms_and_knows_no_sign_of_zero(
 def test_a_file_gives_the_frames_back(tmp_path: Path, compress: bool) -> None:
     path = recorded(tmp_path / "out.h5", header(compress=compress))
     with Trajectory(path) as trajectory:
-        assert trajectory.header.memory == LAYOUT
+        assert trajectory.header.layout == LAYOUT
         assert [content(frame.memory) for frame in trajectory] == [content(frame.memory) for frame in frames()]
         assert trajectory.digests == [frame.digest for frame in frames()]
 
@@ -186,8 +194,8 @@ def test_a_changed_memory_is_found_by_its_digest(tmp_path: Path) -> None:
     ],
 )
 def test_a_memory_that_makes_no_sense_is_refused(texts: list[str]) -> None:
-    from atomsim.trajectory.document import document, header_from
     from atomsim.trajectory.guard import DamageError
+    from atomsim.trajectory.header import document, header_from
 
     run = header()
     values = {**document(run), "memory": texts}

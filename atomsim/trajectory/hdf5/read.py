@@ -11,12 +11,11 @@ import numpy as np
 
 from atomsim.core.memory import Memory
 from atomsim.core.model import State
-from atomsim.trajectory.document import Kind, check_version, contents_digest, end_from, fields, header_from
 from atomsim.trajectory.guard import DamageError, check_room, odd
+from atomsim.trajectory.hdf5 import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
 from atomsim.trajectory.hdf5.foreign import require_ours
 from atomsim.trajectory.hdf5.hardening import PlainFile
-from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
-from atomsim.trajectory.header import Header
+from atomsim.trajectory.header import Header, Kind, check_version, contents_digest, end_from, fields, header_from
 from atomsim.trajectory.rows import OBSERVABLES, SERIES, Series, check_rounds, state_of
 
 
@@ -65,9 +64,9 @@ class Finished:
         self._velocity = file.chunks(f"{PARTICLES}/velocity/value", shape, rows)
         self._memory = {
             array.name: file.in_one_run(f"{MEMORY}/{array.name}", array.dtype.str, (n_frames, *array.shape))
-            for array in self.header.memory
+            for array in self.header.layout
         }
-        check_room(sum(array.n_bytes for array in self.header.memory))
+        check_room(sum(array.n_bytes for array in self.header.layout))
         if not self._position.compressed == self._velocity.compressed == self.header.compress:
             raise odd("it is compressed in another way")
 

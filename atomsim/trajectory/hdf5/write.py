@@ -13,12 +13,19 @@ from typing import Any, TypeAlias
 import h5py
 import numpy as np
 
-from atomsim.trajectory.document import contents_digest, document, fields, storable
-from atomsim.trajectory.hdf5.layout import MEMORY, NUMBERS, PARAMETERS, PARTICLES, UNIT_NOTE, UNITS, chunk_rows
+from atomsim.trajectory.hdf5 import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
 from atomsim.trajectory.hdf5.sink import Sink
+from atomsim.trajectory.header import contents_digest, document, fields, storable
 from atomsim.trajectory.interrupts import held
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES
+
+UNITS = {"time": "ps", "position": "Angstrom", "velocity": "Angstrom ps-1"}
+"""Labels that readers of H5MD demand."""
+
+UNIT_NOTE = (
+    "placeholder labels of reduced units: a length of 1 is the radius of an atom, velocities are per unit of time"
+)
 
 Group: TypeAlias = Any  # h5py has no types
 Dataset: TypeAlias = Any
@@ -39,7 +46,7 @@ def write(journal: Journal, path: Path) -> None:
         # Everything that could make two identical runs differ is switched off: times are not tracked, and the oldest
         # and newest form of the format that may be chosen are fixed.
         with h5py.File(sink, "w", libver=("earliest", "v110")) as file:
-            _write_identity(file, journal.header.versions.program)
+            _write_identity(file, journal.header.program_version)
             _write_frames(journal, file, between_pieces)
             _write_observables(journal, file)
             _write_bonds(journal, file)
@@ -74,7 +81,7 @@ def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[], No
         array.name: file.create_dataset(
             f"{MEMORY}/{array.name}", (len(series), *array.shape), array.dtype, track_times=False
         )
-        for array in header.memory
+        for array in header.layout
     }
     for start in range(0, len(series), rows):
         piece = journal.rows(start, min(start + rows, len(series)))

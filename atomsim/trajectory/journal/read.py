@@ -15,9 +15,8 @@ import numpy as np
 
 from atomsim.core.model import State
 from atomsim.disk import Stamp
-from atomsim.trajectory.document import check_version, end_from, header_from
 from atomsim.trajectory.guard import DamageError, check_room
-from atomsim.trajectory.header import End, Header
+from atomsim.trajectory.header import End, Header, check_version, end_from, header_from
 from atomsim.trajectory.journal.form import BONDS, END, FRAMES, GO_ON, HEAD, PREFIX, REPLACES, checksum_start
 from atomsim.trajectory.rows import SERIES, Rows, Series, check_rounds, memory_of, row_dtype, state_of
 
@@ -92,7 +91,7 @@ class Journal:
         check_version(values)
         bonds = np.frombuffer(self._payload_of(BONDS, next(records, None)), "<i4").reshape(-1, 3)
         self.header: Header = header_from(values, bonds[:, :2], bonds[:, 2])
-        self._dtype = row_dtype(self.header.n_atoms, self.header.memory)
+        self._dtype = row_dtype(self.header.n_atoms, self.header.layout)
         check_room(self._dtype.itemsize)
 
     def _read_rest(self, records: Iterator[Record]) -> None:

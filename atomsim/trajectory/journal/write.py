@@ -17,9 +17,8 @@ import numpy as np
 from atomsim import disk
 from atomsim.disk import Stamp
 from atomsim.errors import InputError, Remedy, RunError
-from atomsim.trajectory.document import document
 from atomsim.trajectory.guard import DamageError
-from atomsim.trajectory.header import End, Header
+from atomsim.trajectory.header import End, Header, document
 from atomsim.trajectory.journal.form import (
     BONDS,
     END,

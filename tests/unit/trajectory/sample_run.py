@@ -18,8 +18,8 @@ SCENE = "atomsim: 1\ntitle: Two rods · τ\n\n"
 def model(n_atoms: int = 7) -> Model:
     """Return two groups and one bond in each."""
     half = n_atoms // 2 + 1
-    left = GroupSpan("left", 0, half, "#4682b4", Origin("groups", "left", "rods.yaml", 5))
-    right = GroupSpan("right", half, n_atoms, "#b22222", Origin("groups", "right", "rods.yaml", 9))
+    left = GroupSpan("left", 0, half, Origin("groups", "left", "rods.yaml", 5))
+    right = GroupSpan("right", half, n_atoms, Origin("groups", "right", "rods.yaml", 9))
     bonds = tuple(
         BondTable(Origin("bonds", name, "rods.yaml", line), np.array([i]), np.array([i + 1]), np.array([1.0]))
         for name, line, i in (("left", 13, 0), ("right", 17, half))
@@ -31,6 +31,7 @@ def header(rounds: int = 40, *, n_atoms: int = 7, record_every: int = 10, compre
     """Return the header of a run of `model`."""
     return Header.of(
         model(n_atoms),
+        group_color=("#4682b4", "#b22222"),
         scene_text=SCENE,
         scene_name="rods.yaml",
         overrides=("rounds=40",),

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from sample_run import SCENE, header, model
 
-from atomsim.trajectory.document import FIELDS, REMEMBERING, check_version, document, end_from, header_from
 from atomsim.trajectory.guard import DamageError
-from atomsim.trajectory.header import count_frames
+from atomsim.trajectory.header import PLAIN, REMEMBERING, check_version, document, end_from, fields, header_from
+from atomsim.trajectory.rows import count_frames
 
 
 def test_header_of_a_model_names_every_declaration_and_bond() -> None:
@@ -32,7 +32,7 @@ def test_header_of_a_model_names_every_declaration_and_bond() -> None:
 def test_a_scene_without_bonds_has_an_empty_table_of_them() -> None:
     bare = model()
     bare = type(bare)(bare.title, bare.time_step, bare.n_atoms, bare.groups, (), (), ())
-    run = type(header()).of(bare, scene_text="", scene_name="-", rounds=1, record_every=1)
+    run = type(header()).of(bare, group_color=["#000000"] * 2, scene_text="", scene_name="-", rounds=1, record_every=1)
     assert run.bond.shape == (0, 2)
     assert run.bond_table.shape == (0,)
 
@@ -49,23 +49,26 @@ def test_the_document_survives_json_and_gives_the_same_header() -> None:
     assert document(again) == document(run)
     assert again.groups == run.groups
     assert again.origins == run.origins
-    assert list(document(run)) == list(FIELDS)
+    assert list(document(run)) == list(fields(PLAIN))
 
 
 def test_copies_of_a_group_are_told_in_its_name() -> None:
-    run = header()
-    left, right = run.groups
-    copied = replace(run, groups=(replace(left, n_copies=left.stop - left.start), right))
-    values = document(copied)
+    bare = model()
+    left, right = bare.groups
+    copied = replace(bare, groups=(replace(left, n_copies=left.stop - left.start), right))
+    run = type(header()).of(
+        copied, group_color=["#000000"] * 2, scene_text="", scene_name="-", rounds=1, record_every=1
+    )
+    values = document(run)
     assert values["group_names"] == ["left × 4", "right"]
-    assert header_from(values, run.bond, run.bond_table).groups == copied.groups
+    assert header_from(values, run.bond, run.bond_table).groups == copied.groups == run.groups
     with pytest.raises(DamageError, match="group_names"):
         header_from({**values, "group_names": ["left × 3", "right"]}, run.bond, run.bond_table)
 
 
 def test_names_that_utf_8_cannot_write_are_made_writable() -> None:
     run = header()
-    odd = type(run)(**{name: getattr(run, name) for name in run.__slots__} | {"scene_name": "a\udcff\0.yaml"})
+    odd = replace(run, scene_name="a\udcff\0.yaml")
     assert document(odd)["scene_name"] == "a\\udcff\\0.yaml"
 
 
@@ -104,7 +107,7 @@ def test_values_that_make_no_sense_are_refused_by_name(name: str, value: object)
         header_from({**document(run), name: value}, run.bond, run.bond_table)
 
 
-@pytest.mark.parametrize("name", FIELDS)
+@pytest.mark.parametrize("name", fields(PLAIN))
 def test_a_missing_value_is_refused_by_name(name: str) -> None:
     run = header()
     values = {key: value for key, value in document(run).items() if key != name}

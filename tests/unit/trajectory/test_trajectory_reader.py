@@ -18,8 +18,7 @@ from sample_run import TIME_STEP, frame, header, holds, is_same_frame, killed, r
 
 from atomsim.errors import InputError
 from atomsim.trajectory import End, Recorder, Trajectory
-from atomsim.trajectory.document import document
-from atomsim.trajectory.header import Versions
+from atomsim.trajectory.header import document
 from atomsim.version import __version__
 
 
@@ -249,7 +248,7 @@ def test_closing_while_another_thread_reads(path: Path) -> None:
     [("9.0.0", True), ("0.1.0", False), ("0.0.9", False), ("0.1.1rc1", True), ("?", False), ("9" * 10_000, True)],
 )
 def test_a_later_version_is_named(tmp_path: Path, version: str, is_later: bool) -> None:
-    path = record(tmp_path / "out.h5", replace(header(40), versions=replace(Versions.here(), program=version)))
+    path = record(tmp_path / "out.h5", replace(header(40), program_version=version))
     with Trajectory(path) as trajectory:
         notices = [str(notice) for notice in trajectory.notices()]
     assert notices == (
