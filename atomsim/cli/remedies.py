@@ -64,7 +64,7 @@ def in_words(remedy: Remedy) -> str:
         case "record golden":
             return "record it with: atomsim golden record"
         case "standard input":
-            return "read a pipe as standard input, which is named -"
+            return f"as standard input it can be read: atomsim check - < {typed(path)}"
         case "numpy":
             return "or use --backend numpy"
     assert_never(remedy.kind)

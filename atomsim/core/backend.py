@@ -126,10 +126,16 @@ def _numba_as_asked_for(threads: int | None, model: Model) -> Backend:
         return _numba(threads, model, "as asked for")
     except Exception as error:
         raise InputError(
-            f"Numba is installed but does not work here: {_first_line(error)}; "
+            f"Numba is installed but does not work here: {_first_line(error)}{_settings()}; "
             "install it anew with: pip install --force-reinstall 'atomsim[fast]'",
             Remedy("numpy"),
         ) from error
+
+
+def _settings() -> str:
+    """Name what in the environment may keep Numba from working."""
+    names = sorted(name for name in os.environ if name.startswith("NUMBA_"))
+    return f" ({', '.join(names)} in the environment)" if names else ""
 
 
 def _best(threads: int | None, model: Model, rounds_ahead: int) -> Backend:

@@ -137,7 +137,7 @@ def _read_text(name: str) -> str:
     path = Path(name)
     try:
         if not (path.is_file() or path.is_dir() or _is_open(path)) and path.exists():
-            raise _unreadable(name, "this is not a regular file", Remedy("standard input"))
+            raise _unreadable(name, "this is not a regular file", Remedy("standard input", path))
         with path.open("rb") as file:
             data = file.read(MAX_CHARACTERS + 1)
     except (OSError, ValueError) as error:

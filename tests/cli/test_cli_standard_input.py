@@ -88,7 +88,10 @@ def test_a_pipe_by_name_is_refused_and_not_waited_for(cli, command):
     os.mkfifo("pipe.yaml")
     result = cli(*command.split(), "pipe.yaml")
     assert (result.code, result.out) == (2, "")
-    assert result.err == "pipe.yaml: this is not a regular file; read a pipe as standard input, which is named -\n"
+    assert (
+        result.err
+        == "pipe.yaml: this is not a regular file; as standard input it can be read: atomsim check - < pipe.yaml\n"
+    )
 
 
 @pytest.mark.parametrize("command", ["show", "render", "verify", "recover", "measure", "run --resume"])

@@ -25,6 +25,8 @@ def test_kernels_go_to_the_users_cache(monkeypatch: pytest.MonkeyPatch, tmp_path
     place = cache.folder()
     assert place is not None
     assert place.parent == tmp_path / ".cache"
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")  # which would be another one in every folder
+    assert cache.folder() == place
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
     assert cache.folder() == tmp_path / "xdg" / place.name
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))

@@ -7,7 +7,8 @@ import io
 import os
 import re
 import sys
-from typing import TextIO
+import warnings
+from typing import Any, TextIO
 
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 """Characters by which a text could command the terminal; line breaks and tabs only lay it out."""
@@ -20,6 +21,8 @@ def prepare() -> None:
     closed from outside is opened on nothing, or the next file to be opened would take its place and its messages. One
     that another program has set not to block is set back, or it would fail whenever its reader is slow.
     """
+    if not sys.warnoptions:  # nobody has asked for what libraries tell their developers
+        warnings.showwarning = _unheard
     for fd in range(3):
         try:
             os.fstat(fd)
@@ -31,6 +34,10 @@ def prepare() -> None:
         if isinstance(stream, io.TextIOWrapper):
             encoding = stream.encoding if stream.isatty() else "utf-8"
             stream.reconfigure(encoding=encoding, errors="backslashreplace")
+
+
+def _unheard(*_: Any, **__: Any) -> None:
+    """Show a warning of Python to nobody."""
 
 
 def deliver() -> OSError | None:

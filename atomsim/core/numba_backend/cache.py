@@ -17,12 +17,17 @@ def folder() -> Path | None:
     """Return the folder for the kernels of these sources, or None where there are no source files (inside a zip)."""
     sources = sorted(Path(__file__).parents[1].rglob("*.py"))
     digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
-    chosen = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    chosen = os.environ.get("NUMBA_CACHE_DIR") or _absolute(os.environ.get("XDG_CACHE_HOME"))
     try:
         base = Path(chosen) if chosen else Path.home() / ".cache"
     except RuntimeError:  # a user without a home
         return None
     return base / f"atomsim-kernels-{digest[:16]}" if sources else None
+
+
+def _absolute(folder: str | None) -> str | None:
+    """Leave out a folder that depends on where one happens to be, as the standard for such folders asks."""
+    return folder if folder and Path(folder).is_absolute() else None
 
 
 def writable_folder() -> Path | None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import numba
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")  # Numba complains of settings in the environment, which are others' affairs
+    import numba
 
 from atomsim.core.numba_backend.cache import writable_folder
 
@@ -13,6 +16,9 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 _numba: Any = numba
 """Kernels are annotated as the Python functions they are written as."""
+
+if _numba.config.DISABLE_JIT:
+    raise ImportError("its compiler is switched off by NUMBA_DISABLE_JIT")
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "_nrt": False}
 """Kernels run without the interpreter's lock, in IEEE arithmetic exactly as written, and allocate nothing: all arrays
