@@ -53,7 +53,7 @@ Numbers may be written `1e-9`, whole ones `1e6`, and none `1,000`; booleans are 
 [copies](#copies-of-a-group-copies) `leg.0` is one copy and `leg[-1]` the last atom of each |
 | `[selection, selection]` | two selections: `[ring, floor]`, `[[left, right], floor]` |
 | `color` | a CSS name such as `steelblue`, or `"#rgb"` or `"#rrggbb"` in quotes |
-| `mapping by name` | `name: value`, one a line; names have letters, digits, `_` and `-` |
+| `mapping by name` | `name: value`, one a line; names have letters of any script, digits, `_` and `-` |
 
 An atom has radius 1 and mass 1. Lengths are in radii; a unit of time is whatever `time_step` makes of it.
 """

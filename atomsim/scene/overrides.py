@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Iterable
 
 from atomsim.errors import Mark, Problem, SceneError
+from atomsim.scene.language.names import normalised
 from atomsim.scene.mistakes.wording import meant, readable, shown, suggestion
 from atomsim.scene.source import KeyPath, dotted
 from atomsim.scene.yaml.strict_yaml import read_yaml
@@ -54,7 +55,7 @@ class _Setting:
         path, equals, value = setting.partition("=")
         if not equals:
             raise self._refused((), "a setting is PATH=VALUE; the `=` is missing")
-        self._parts = tuple(path.strip().split("."))
+        self._parts = tuple(normalised(path).strip().split("."))
         if not all(self._parts):
             raise self._refused((), "a path is keys and indices with a dot between two, like `forces.weight.impulse.2`")
         if self._parts[0] == "extends":

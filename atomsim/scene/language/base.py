@@ -18,6 +18,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.css_colors import CSS_COLORS
+from atomsim.scene.language.names import LONGEST_NAME, NAME_PATTERN, is_name, normalised
 from atomsim.scene.language.selection import SelectionSyntaxError, parse_selection
 
 
@@ -113,14 +114,9 @@ Axis = Annotated[
 """A direction: x, y, z or three numbers, of any length but zero."""
 
 
-LONGEST_NAME = 100
-"""More letters than any file, table or picture would show."""
-
-NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_-]*$"
-
-
 def _check_name(value: str) -> str:
-    if not re.fullmatch(NAME_PATTERN, value):
+    value = normalised(value)
+    if not is_name(value):
         raise PydanticCustomError("name", "a name has letters, digits, _ and -, and does not begin with a digit or -")
     if len(value) > LONGEST_NAME:
         raise PydanticCustomError("name", "a name has at most {most} letters", {"most": LONGEST_NAME})
@@ -130,7 +126,7 @@ def _check_name(value: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_check_name), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})]
-"""A name that a person gives: letters, digits, `_` and `-`."""
+"""A name that a person gives: letters of any script, digits, `_` and `-`."""
 
 
 def drop_nulls(value: Any) -> Any:
@@ -176,7 +172,7 @@ def _check_selection(value: str) -> str:
         parse_selection(value)
     except SelectionSyntaxError as error:
         raise PydanticCustomError("selection_syntax", "{why}", {"why": str(error)}) from None
-    return value
+    return normalised(value)
 
 
 _SELECTION_SCHEMA = {

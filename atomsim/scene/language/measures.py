@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from atomsim.scene.language.names import is_name, normalised
 from atomsim.scene.language.selection import parse_selection
 from atomsim.scene.mistakes.wording import either, readable, suggestion
 
@@ -146,7 +147,7 @@ _SYNONYMS: dict[str, tuple[QuantityName, ...]] = {
 
 _CLAUSE = re.compile(r"\s*(.*?)(?:(?:\s+|^)(of|between)(?:\s+(.*?))?)?\s*", re.DOTALL | re.IGNORECASE)
 _AND = re.compile(r"\s+and\s+", re.IGNORECASE)
-_RULE = re.compile(r"(bonds|collisions)\.([A-Za-z_][A-Za-z0-9_-]*)", re.ASCII)
+_RULE = re.compile(r"(bonds|collisions)\.(\S+)")
 _LIST = re.compile(r"\[(.*)\]", re.DOTALL)
 _BETWEEN_ITEMS = re.compile(r",(?![^\[\]]*\])")
 
@@ -216,7 +217,7 @@ def parse_measure(text: str) -> Measure:
     >>> str(parse_measure("Gap  between ring and [floor, wall]"))
     'gap between ring and [floor, wall]'
     """
-    words, link, rest = _clause(text)
+    words, link, rest = _clause(normalised(text))
     component = next((letter for letter in COMPONENTS if letter == words), None)
     if component is None:
         return _measure(_quantity(words, text), None, link, rest)
@@ -267,7 +268,7 @@ def _measure(quantity: Quantity, component: Component | None, link: str | None, 
             raise MeasureSyntaxError(f"{quantity.name} is measured as {_form(quantity)}")
         return Measure(quantity.name, component, (_selection(sides[0]), _selection(sides[1])))
     rule = _RULE.fullmatch(rest)
-    if rule is None:
+    if rule is None or not is_name(rule[2]):
         return Measure(quantity.name, component, (_selection(rest),))
     if rule[1] != quantity.rules:
         raise MeasureSyntaxError(f"{quantity.name} is not measured of {rule[1]}; write {_form(quantity)}")

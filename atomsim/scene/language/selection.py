@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from atomsim.scene.language.names import is_name, normalised
 from atomsim.scene.mistakes.wording import readable
 
-_EXPRESSION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_-]*)(?:\.([0-9]{1,9}))?\s*(?:\[([^\[\]]*)\]\s*)?", re.ASCII)
+_EXPRESSION = re.compile(r"\s*([^\s\[\].]+)(?:\.([0-9]{1,9}))?\s*(?:\[([^\[\]]*)\]\s*)?", re.ASCII)
 _NUMBER = re.compile(r"\s*([+-]?[0-9]{1,18})\s*", re.ASCII)
 
 
@@ -42,8 +43,8 @@ def parse_selection(text: str) -> SelectionPart:
     >>> parse_selection("floor[0, 2:]")
     SelectionPart(group='floor', axes=(0, slice(2, None, None)), copy=None)
     """
-    match = _EXPRESSION.fullmatch(text)
-    if match is None:
+    match = _EXPRESSION.fullmatch(normalised(text))
+    if match is None or not is_name(match[1]):
         raise SelectionSyntaxError(
             f"`{readable(text)}` is no selection; write `ring`, `ring[3]`, `ring[0:10]` or `all`"
         )

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import Declaration, OneOrList, as_tuple, drop_nulls
+from atomsim.scene.language.names import normalised
 from atomsim.scene.mistakes.wording import meant, readable
 
 Code: TypeAlias = Literal[
@@ -72,7 +73,9 @@ class Silence(Declaration):
 
     because: Annotated[str, AfterValidator(_check_reason)]
     """Why it is meant: for whoever reads the scene later."""
-    names: Annotated[tuple[str, ...], BeforeValidator(as_tuple), OneOrList()] = ()
+    names: Annotated[
+        tuple[Annotated[str, AfterValidator(normalised)], ...], BeforeValidator(as_tuple), OneOrList()
+    ] = ()
     """Only findings that mention all these, such as `groups.cloth`; by default every finding of this code."""
 
 

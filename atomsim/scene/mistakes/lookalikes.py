@@ -24,14 +24,16 @@ def first_odd(text: str, plainly: str = "") -> str | None:
 
     Args:
         text: what was written.
-        plainly: what was meant, if that is known: then whatever is not ASCII and not in it is odd.
+        plainly: what was meant, if that is known: then letters of another alphabet that are not in it are odd, too.
 
     >>> first_odd("count\\uff1a 3"), first_odd("\\u0441ount", "count"), first_odd("réng")
     ('U+FF1A FULLWIDTH COLON', 'U+0441 CYRILLIC SMALL LETTER ES', None)
     """
     for sign in text:
-        if not sign.isascii() and (_is_odd(sign) or (plainly and sign not in plainly)):
-            return f"U+{ord(sign):04X} {unicodedata.name(sign, '')}".rstrip()
+        name = unicodedata.name(sign, "")
+        is_foreign = plainly and sign not in plainly and not name.startswith("LATIN")
+        if not sign.isascii() and (is_foreign or _is_odd(sign)):
+            return f"U+{ord(sign):04X} {name}".rstrip()
     return None
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from atomsim.scene.declarations import sections, selecting_keys
 from atomsim.scene.language import Scene
+from atomsim.scene.language.names import normalised
 from atomsim.scene.language.selection import SelectionSyntaxError, parse_selection
 from atomsim.scene.mistakes.mistake import Mistake
 from atomsim.scene.mistakes.wording import meant, readable
@@ -48,7 +49,7 @@ def check_silences(data: dict[str, Any], source: Source) -> list[Mistake]:
     return [
         Mistake(source.mark(path), path, partial(_nothing_to_silence, section, text, data))
         for path, text in _silenced(data)
-        for section, _, name in [text.partition(".")]
+        for section, _, name in [normalised(text).partition(".")]
         if section not in Scene.model_fields
         or (section in sections() and name and name not in _mapping(data.get(section)))
     ]

@@ -59,8 +59,9 @@ def did_you_mean(word: str, close: str) -> str:
     >>> did_you_mean("laod", "load"), did_you_mean("lo\u0430d", "load")
     ('did you mean `load`?', 'did you mean `load`, without U+0430 CYRILLIC SMALL LETTER A?')
     """
-    odd = first_odd(word, plainly=close)
-    return f"did you mean `{readable(close)}`{f', without {odd}' if odd is not None else ''}?"
+    less, more = first_odd(word, plainly=close), first_odd(close, plainly=word)
+    differs = f", without {less}" if less is not None else f", with {more}" if more is not None else ""
+    return f"did you mean `{readable(close)}`{differs}?"
 
 
 def either(choices: Iterable[str]) -> str:

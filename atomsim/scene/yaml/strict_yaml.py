@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -181,13 +182,13 @@ class _Reader:
         return entries
 
     def _key(self, event: yaml.Event, path: KeyPath) -> str:
-        """Read a key; whatever it looks like, it is text."""
+        """Read a key; whatever it looks like, it is text, in its composed form (NFC): é is one letter."""
         if not isinstance(event, yaml.ScalarEvent):
             raise self._refused(event, path, "a key must be a plain word")
         self._node(event, path)
         if event.value == "<<" and event.implicit[0]:
             self._refuse(event, path, "merge keys `<<` are not part of the scene language; write the keys out")
-        return str(event.value).translate(self._back)
+        return unicodedata.normalize("NFC", str(event.value).translate(self._back))
 
     def _aliased(self, event: yaml.AliasEvent, path: KeyPath) -> Node:
         """Return what an alias repeats, marked at the alias."""
