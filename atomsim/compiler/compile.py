@@ -39,21 +39,8 @@ from atomsim.core.pairs.bonded import bound_pairs
 from atomsim.core.pairs.near import pair_squares, squared_distance
 from atomsim.errors import Problem, SceneError
 from atomsim.scene import LoadedScene
-from atomsim.scene.language import (
-    Bonds,
-    Collisions,
-    Damping,
-    Force,
-    Gravity,
-    Hold,
-    Jitter,
-    Oscillate,
-    Push,
-    Rest,
-    Scene,
-    Tether,
-    Torque,
-)
+from atomsim.scene.language import Bonds, Collisions, Jitter, Rest, Scene
+from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
 from atomsim.scene.source import KeyPath, Source
 
 Array = TypeVar("Array", Floats, Indices)

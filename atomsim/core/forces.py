@@ -23,7 +23,7 @@ from atomsim.core.model import (
 from atomsim.core.pairs.collisions import as_index
 from atomsim.core.pairs.near import distinct
 
-Apply = Callable[[int, Floats, Floats, Floats], None]
+Law = Callable[[int, Floats, Floats, Floats], None]
 """Adds one force: (round_index, position, velocity, impulse), arrays (3, n_atoms), the last one changed in place."""
 
 
@@ -57,7 +57,7 @@ def acting(forces: Sequence[ExternalForce]) -> list[ActingForce]:
     return [force for force in forces if not isinstance(force, HoldForce)]
 
 
-def prepare(force: ActingForce) -> Apply:
+def law(force: ActingForce) -> Law:
     """Return what to call in every round."""
     match force:
         case DampingForce():
@@ -74,7 +74,23 @@ def prepare(force: ActingForce) -> Apply:
             assert_never(force)
 
 
-def _damping(force: DampingForce) -> Apply:
+def strength(force: ActingForce) -> float | None:
+    """Return the largest impulse that a force gives to an atom in a round.
+
+    It is 0 for what only ever takes energy away, and None where nobody can tell beforehand.
+    """
+    match force:
+        case PushForce() | OscillateForce():
+            return math.hypot(*force.impulse)
+        case DampingForce():
+            return 0.0
+        case TorqueForce() | TetherForce():
+            return None
+        case _:
+            assert_never(force)
+
+
+def _damping(force: DampingForce) -> Law:
     """j ← j − m·v (paper section 2.3)."""
     atoms, coefficient = as_index(force.atoms), force.coefficient
 
@@ -84,7 +100,7 @@ def _damping(force: DampingForce) -> Apply:
     return apply
 
 
-def _push(force: PushForce) -> Apply:
+def _push(force: PushForce) -> Law:
     """j ← j + g while the round is in its range."""
     atoms, vector = as_index(force.atoms), np.array(force.impulse)[:, None]
 
@@ -95,7 +111,7 @@ def _push(force: PushForce) -> Apply:
     return apply
 
 
-def _oscillate(force: OscillateForce) -> Apply:
+def _oscillate(force: OscillateForce) -> Law:
     """j ← j + g · sin(2π·round/period + phase)."""
     atoms, vector = as_index(force.atoms), np.array(force.impulse)[:, None]
 
@@ -105,7 +121,7 @@ def _oscillate(force: OscillateForce) -> Apply:
     return apply
 
 
-def _torque(force: TorqueForce) -> Apply:
+def _torque(force: TorqueForce) -> Law:
     """j ← j + s · u with u = axis × (c − centre) and s = magnitude / Σ|u|²; no impulse where all u vanish.
 
     Sums run over atoms in increasing index (`cumsum` adds one after the other), the cross product is a·b − c·d.
@@ -125,7 +141,7 @@ def _torque(force: TorqueForce) -> Apply:
     return apply
 
 
-def _tether(force: TetherForce) -> Apply:
+def _tether(force: TetherForce) -> Law:
     """j ← j + (target − c) · (1 − r²/d²): a bond (paper section 2.3) to a fixed point; none at the point itself."""
     atoms, target = as_index(force.atoms), np.array(force.target)[:, None]
 

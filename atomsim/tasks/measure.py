@@ -20,7 +20,8 @@ from atomsim.core.model import Floats, Model
 from atomsim.disk import behind, whole_file
 from atomsim.errors import InputError, Notice
 from atomsim.measures.series import Measured, columns_of, measured, rows
-from atomsim.scene.language import Hold, Scene
+from atomsim.scene.language import Scene
+from atomsim.scene.language.forces import Hold
 from atomsim.scene.language.measures import Measure, MeasureSyntaxError, parse_measure
 from atomsim.scene.language.selection import SelectionSyntaxError
 from atomsim.tasks.recompute import compile_inside, laid_out_inside

@@ -12,6 +12,7 @@ from atomsim.core.model import State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.observables import Observer
 from atomsim.scene import LoadedScene
+from atomsim.scene.declarations import sections
 
 CONTACT_ROUNDS = {
     "rods": (190, 260),
@@ -81,6 +82,13 @@ def test_everything_expands_to_the_pairs_of_the_oracle() -> None:
     for table, pairs in zip(model.bonds, world.bonds, strict=True):
         found = zip(table.first.tolist(), table.second.tolist(), table.rest_squared.tolist(), strict=True)
         assert list(found) == pairs, table.origin.name
+
+
+@pytest.mark.parametrize("section", ["groups", "bonds", "forces"])
+def test_everything_has_every_word(section: str) -> None:
+    """So whatever a backend forgets is found where it is compared on all of it."""
+    key = sections()[section].key
+    assert {entry[key] for entry in EVERYTHING[section].values()} == set(sections()[section].words)
 
 
 def test_every_declaration_of_everything_changes_the_run() -> None:

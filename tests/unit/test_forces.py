@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.running import after, atoms_at, compiled
 
-from atomsim.core.forces import acting, held_atoms, prepare, quantise
+from atomsim.core.forces import acting, held_atoms, law, quantise
 from atomsim.core.model import Floats
 
 PLACES: list[tuple[float, float, float]] = [(1, 0, 0), (0, 2, 0.5), (-1, -1, 3)]
@@ -20,7 +20,7 @@ def impulse(round_index: int = 0, velocity: Floats | None = None, **force: Any) 
     model, state = compiled({"a": atoms_at(*PLACES)}, forces={"f": force})
     (force_on_them,) = acting(model.forces)
     total = np.zeros((3, 3))
-    prepare(force_on_them)(
+    law(force_on_them)(
         round_index, state.position.T.copy(), np.zeros((3, 3)) if velocity is None else velocity.T.copy(), total
     )
     return total.T

@@ -22,7 +22,6 @@ from atomsim.scene.language import (
     Camera,
     Collisions,
     Declaration,
-    Force,
     Jitter,
     Render,
     RingGroup,
@@ -31,6 +30,7 @@ from atomsim.scene.language import (
     Spin,
 )
 from atomsim.scene.language.base import Named, Selection, Vector
+from atomsim.scene.language.forces import Force
 from atomsim.scene.loader import loads
 from atomsim.scene.schema import schema, schema_text
 from atomsim.scene.yaml.strict_yaml import read_yaml

@@ -9,7 +9,7 @@ import numpy as np
 
 from atomsim.core.diagnosis.energy import SLACK, EnergyBudget, total_energy
 from atomsim.core.diagnosis.stiffness import is_damped_too_much, largest_time_step
-from atomsim.core.forces import acting, prepare
+from atomsim.core.forces import acting, law
 from atomsim.core.model import Floats, Indices, Model, Observables, Origin, State, atom_name
 from atomsim.core.pairs.collisions import CONTACT_SQUARED, table_pairs_near
 from atomsim.core.pairs.near import pair_squares, squared_distance
@@ -151,7 +151,7 @@ def _pushes(
         yield from _strongest(collision.origin, position, atom, first, second, rest_squared)
     for force in acting(model.forces):
         impulse = np.zeros_like(position)
-        prepare(force)(state.round_index, position, velocity, impulse)
+        law(force)(state.round_index, position, velocity, impulse)
         yield float(np.sqrt((impulse[:, atom] * impulse[:, atom]).sum())), force.origin, None
     if forces is not None:
         yield float(np.sqrt((forces[atom] * forces[atom]).sum())), "forces from outside", None

@@ -3,21 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import assert_never
 
 import numpy as np
 
-from atomsim.core.model import (
-    DampingForce,
-    HoldForce,
-    Model,
-    Observables,
-    OscillateForce,
-    PushForce,
-    State,
-    TetherForce,
-    TorqueForce,
-)
+from atomsim.core.forces import acting, held_atoms, strength
+from atomsim.core.model import Model, Observables, State
 
 SLACK = 1000.0
 """How far above its budget the energy must be; it swings by such factors only close to the stability limit."""
@@ -45,18 +35,11 @@ class EnergyBudget:
         self._trifle = TRIFLE * model.n_atoms
         push = np.zeros(model.n_atoms)
         self._is_known = True
-        for force in model.forces:
-            match force:
-                case PushForce() | OscillateForce():
-                    push[force.atoms] += math.hypot(*force.impulse)
-                case TorqueForce() | TetherForce():
-                    self._is_known = False
-                case HoldForce():
-                    self._is_known &= not first.velocity[force.atoms].any()
-                case DampingForce():
-                    pass
-                case _:
-                    assert_never(force)
+        for force in acting(model.forces):
+            size = strength(force)
+            self._is_known &= size is not None
+            push[force.atoms] += size or 0.0
+        self._is_known &= not first.velocity[held_atoms(model.forces)].any()
         largest = float(push.max()) or 1.0
         share = push / largest  # squares of the pushes themselves may not be finite
         self._push = largest * float(np.sqrt((share * share).sum()))

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from atomsim.core.forces import acting, held_atoms, prepare
+from atomsim.core.forces import acting, held_atoms, law
 from atomsim.core.model import Floats, Model, State
 from atomsim.core.numpy_backend.bond_forms import Scatter
 from atomsim.core.numpy_backend.bonds import bond_forms, joined
@@ -30,7 +30,7 @@ class NumpyStepper:
         held = held_atoms(model.forces)
         self._bonds = [bond_forms(table, held) for table in joined(model.bonds)]
         self._near = NearList(model.collisions, model.n_atoms)
-        self._forces = [prepare(force) for force in acting(model.forces)]
+        self._forces = [law(force) for force in acting(model.forces)]
         self._outside: Floats | None = None
         self._held = as_index(held) if held.size else None
         self._round_index = state.round_index

@@ -1,7 +1,6 @@
 """Version 1 of the scene language as frozen records; the string below each field documents it everywhere."""
 
 from atomsim.scene.language.base import Declaration, Rest, Vector
-from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
 from atomsim.scene.language.groups import (
     AtomsGroup,
     BallGroup,
@@ -35,20 +34,14 @@ __all__ = [
     "Camera",
     "Collisions",
     "Copies",
-    "Damping",
     "Declaration",
     "DistanceThresholdBonds",
-    "Force",
-    "Gravity",
     "Group",
-    "Hold",
     "Jitter",
     "ListedBonds",
     "NeighbourBonds",
-    "Oscillate",
     "PlaneGroup",
     "PolygonGroup",
-    "Push",
     "Render",
     "Rest",
     "RingGroup",
@@ -57,7 +50,5 @@ __all__ = [
     "Silence",
     "Spin",
     "StringGroup",
-    "Tether",
-    "Torque",
     "Vector",
 ]
