@@ -63,7 +63,7 @@ COMPILER: Place = {
         ("language.forces import ", "language.forces import Slope, "),
         (
             "                case Hold():",
-            "                case Slope():\n                    return SlopeForce(origin, atoms, force.rate)\n"
+            "                case Slope():\n                    return [SlopeForce(origin, atoms, force.rate)]\n"
             "                case Hold():",
         ),
     ]

@@ -18,7 +18,7 @@ import atomsim
 from atomsim.core.backend import MakeStepper
 from atomsim.core.diagnosis.energy import total_energy
 from atomsim.core.memory import EMPTY
-from atomsim.core.model import Floats, Model, State
+from atomsim.core.model import Floats, Model, Origin, PushForce, State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.simulate import simulate
 from atomsim.core.simulation import Simulation
@@ -99,26 +99,21 @@ def test_forces_from_outside_act_in_every_round_until_they_are_set_again() -> No
 @every_backend
 def test_forces_from_outside_are_a_push_declared_last(make_stepper: MakeStepper) -> None:
     """The same bits as a push on every atom after all other forces; held atoms stay held."""
-    scene = {**EVERYTHING, "forces": dict(EVERYTHING["forces"])}
-    n_atoms = compiled(**scene)[0].n_atoms
-    wind = winds(n_atoms)
-    expected = after_pushes(scene, wind, 40)
-    simulation = Simulation(*compiled(**scene), make_stepper)
+    model, state = compiled(**EVERYTHING)
+    wind = winds(model.n_atoms)
+    simulation = Simulation(model, state, make_stepper)
     simulation.set_forces(wind)
     simulation.step(13)
     simulation.step(27)
-    assert digest_of(simulation.state) == digest_of(expected) != digest_of(after(*compiled(**scene), 40))
+    expected = after_pushes(model, state, wind, 40)
+    assert digest_of(simulation.state) == digest_of(expected) != digest_of(after(model, state, 40))
 
 
-def after_pushes(scene: dict[str, Any], wind: Floats, n_rounds: int) -> State:
+def after_pushes(model: Model, state: State, wind: Floats, n_rounds: int) -> State:
     """Declare one push per atom after all other forces, and run."""
-    groups = compiled(**scene)[0].groups
-    names = [f"{group.name}[{atom}]" for group in groups for atom in range(group.stop - group.start)]
-    pushes = {
-        f"wind{number}": {"kind": "push", "acts_on": name, "impulse": impulse}
-        for number, (name, impulse) in enumerate(zip(names, wind.tolist(), strict=True))
-    }
-    return after(*compiled(**{**scene, "forces": {**scene["forces"], **pushes}}), n_rounds)
+    origin = Origin("forces", "wind", "-", 1)
+    pushes = [PushForce(origin, np.array([atom]), (x, y, z), 0, None) for atom, (x, y, z) in enumerate(wind.tolist())]
+    return after(replace(model, forces=(*model.forces, *pushes)), state, n_rounds)
 
 
 @every_backend
