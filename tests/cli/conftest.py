@@ -33,6 +33,8 @@ def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
     shutil.copytree(SCENES, tmp_path / "scenes")
     monkeypatch.chdir(tmp_path)
 
+    monkeypatch.setattr(sys, "warnoptions", ["error"])  # what libraries warn of is to be heard here
+
     def run(*arguments: str) -> Result:
         monkeypatch.setattr(sys, "argv", ["atomsim", *arguments])
         capsys.readouterr()

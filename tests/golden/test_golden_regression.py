@@ -26,6 +26,8 @@ SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
 
 @pytest.fixture
 def cli(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "warnoptions", ["error"])  # what libraries warn of is to be heard here
+
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["atomsim", *map(str, arguments)])
         capsys.readouterr()
