@@ -66,8 +66,16 @@ def write_measures(
     measures: Sequence[str] | None,
     path: Path,
     rounds: Sequence[int] | None = None,
+    report: Callable[[int, int], object] | None = None,
 ) -> int:
     """Measure frames into a CSV file, row by row; every number is written so that reading it gives it back.
+
+    Args:
+        trajectory: the run.
+        measures: as of `measure`.
+        path: the file.
+        rounds: as of `measure`.
+        report: hears how many frames of how many are measured.
 
     Returns:
         The number of rows.
@@ -77,13 +85,16 @@ def write_measures(
         RunError: the file cannot be written.
     """
     asked, gauges = resolved(trajectory, measures)
-    n_rows = 0
+    frames = frames_at(trajectory, rounds)
+    n_rows, n_frames = 0, len(trajectory if frames is None else frames)
     with whole_file(path) as file:
         file.write(_lines([[*LEADING, *columns_of(asked)]]))
-        for part in rows(trajectory, gauges, frames_at(trajectory, rounds)):
+        for part in rows(trajectory, gauges, frames):
             columns = (column.tolist() for column in part)
             file.write(_lines([round_index, time, *values] for round_index, time, values in zip(*columns, strict=True)))
             n_rows += len(part.round)
+            if report is not None:
+                report(n_rows, n_frames)
     return n_rows
 
 

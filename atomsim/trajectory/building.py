@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from pathlib import Path
 
 from atomsim import disk
@@ -14,11 +15,16 @@ from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.journal.write import JournalWriter
 
 
-def build(writer: JournalWriter, path: Path) -> None:
+def build(writer: JournalWriter, path: Path, report: Callable[[int, int], object] | None = None) -> None:
     """Build the finished file `path`, or the one behind that link, from its journal.
 
     What stood under the name stays until the new file is complete, and for good if it is not the one that the run was
     to replace or go on with. Safe to repeat and to kill; the journal is left to the caller.
+
+    Args:
+        writer: holds the journal.
+        path: the file to be.
+        report: hears how many frames of how many are in it.
 
     Raises:
         RunError: there is no frame, or the file cannot be written; the message says where the frames are.
@@ -33,7 +39,7 @@ def build(writer: JournalWriter, path: Path) -> None:
             )
         require_own(path, journal)
         try:
-            _build(writer, journal, path)
+            _build(writer, journal, path, report)
         except OSError as error:
             raise _unwritten(path, error) from error
 
@@ -56,14 +62,14 @@ def _not_own(path: Path) -> RunError:
     )
 
 
-def _build(writer: JournalWriter, journal: Journal, path: Path) -> None:
+def _build(writer: JournalWriter, journal: Journal, path: Path, report: Callable[[int, int], object] | None) -> None:
     # Deferred because HDF5 takes longer to import than a small scene to run.
     from atomsim.trajectory.hdf5.write import write
 
     target = disk.behind(path)
     temporary = disk.beside(writer.path, ".built")
     try:
-        write(journal, temporary)
+        write(journal, temporary, report)
         built = Stamp.of(temporary)
         if built is not None:  # if a kill leaves both file and journal, the next build has to know the file again
             writer.may_replace(built)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 
@@ -143,8 +144,12 @@ class Recorder:
         self._is_open = False
 
 
-def recover(path: str | os.PathLike[str]) -> None:
+def recover(path: str | os.PathLike[str], report: Callable[[int, int], object] | None = None) -> None:
     """Build the finished file from the journal that a killed run left, and remove the journal.
+
+    Args:
+        path: the trajectory.
+        report: hears how many frames of how many are in the file.
 
     Raises:
         InputError: there is no journal, or its header is damaged.
@@ -155,7 +160,7 @@ def recover(path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path}: there is no journal {journal_path(path)} to recover it from")
     writer = JournalWriter.reopen(journal_path(path))
     try:
-        build(writer, path)
+        build(writer, path, report)
         writer.remove()
     finally:
         writer.close()

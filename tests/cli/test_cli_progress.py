@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 import time
 
 import pytest
 
 from atomsim.cli.terminal.progress import Progress, duration, progress_line, rate
+from atomsim.trajectory import Recorder, Trajectory
 
 
 class Terminal(io.StringIO):
@@ -52,7 +54,7 @@ def clock(monkeypatch):
     ],
 )
 def test_the_line_counts_from_where_the_run_began(begin, reached, rounds, seconds, line):
-    assert progress_line(begin, reached, rounds, seconds) == line
+    assert progress_line("round", begin, reached, rounds, seconds) == line
 
 
 def test_rates_have_as_many_digits_as_mean_something():
@@ -102,7 +104,7 @@ def test_a_shorter_line_covers_the_one_before(monkeypatch, clock):
 def test_nobody_is_told_who_does_not_watch(monkeypatch, is_shown, is_silent):
     stream = io.StringIO()
     monkeypatch.setattr(sys, "stderr", stream)
-    with Progress(is_shown) as progress:
+    with Progress(is_shown=is_shown) as progress:
         progress.report(1, 4)
     assert (stream.getvalue() == "") == is_silent
 
@@ -112,6 +114,81 @@ def test_a_terminal_that_is_told_not_to_be_written_to(monkeypatch):
     with Progress(is_shown=False) as progress:
         progress.report(1, 4)
     assert terminal.getvalue() == ""
+
+
+def test_a_line_is_no_wider_than_the_terminal(monkeypatch, clock):
+    """The rest would go into the next line, from where nothing takes it back."""
+    terminal = watched(monkeypatch)
+    terminal.fileno = lambda: 2
+    monkeypatch.setattr(os, "get_terminal_size", lambda fd: os.terminal_size((20, 24)))
+    with Progress() as progress:
+        progress.report(0, 400)
+        clock.append(1001.0)
+        progress.report(200, 400)
+    assert [len(line) for line in terminal.lines()] == [0, 19, 19, 19, 0]
+
+
+def test_a_terminal_that_cannot_return_its_carriage(monkeypatch):
+    terminal = watched(monkeypatch)
+    monkeypatch.setenv("TERM", "dumb")
+    with Progress() as progress:
+        progress.report(1, 4)
+    assert terminal.getvalue() == ""
+
+
+def test_what_is_gone_through_is_counted(monkeypatch, clock):
+    terminal = watched(monkeypatch)
+    with Progress("frame") as progress:
+        for number in progress.over([1, 2, 3]):
+            clock.append(1000.0 + number)
+    assert [line.strip() for line in terminal.lines()] == [
+        "",
+        "frame 0 of 3  0 %  0 frames/s  ? left",
+        "frame 1 of 3  33 %  1 frames/s  0:02 left",
+        "frame 2 of 3  66 %  1 frames/s  0:01 left",
+        "frame 3 of 3  100 %  1 frames/s  0:00 left",
+        "",
+        "",
+    ]
+
+
+def test_nothing_at_all_is_done_at_once(monkeypatch):
+    terminal = watched(monkeypatch)
+    with Progress("frame") as progress:
+        assert list(progress.over([])) == []
+    assert "frame 0 of 0  0 %" in terminal.getvalue()
+
+
+LONG = {
+    "run scenes/rods.yaml --rounds 20 -o new.h5": "round 0 of 20",
+    "run --resume out.h5 --rounds 40": "round 20 of 40",
+    "verify out.h5": "round 0 of 20",
+    "compare out.h5 out.h5": "frame 0 of 3",
+    "render out.h5 --size 32x24 --rounds 0,10,20": "picture 0 of 3",
+    "render out.h5 --size 32x24 --frames film": "picture 0 of 3",
+    "recover killed.h5": "frame 3 of 3",
+    "measure out.h5 -o out.csv": "frame 3 of 3",
+    "golden record scenes/threads.yaml": "round 0 of ",
+    "golden check scenes/threads.yaml": "round 0 of ",
+}
+
+
+@pytest.mark.parametrize("command", LONG)
+def test_whatever_may_take_long_says_how_far_it_is(cli, monkeypatch, command):
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20", "-q").code == 0
+    if "recover" in command:
+        with Trajectory("out.h5") as trajectory, Recorder("killed.h5", trajectory.header) as recorder:
+            for frame in trajectory:
+                recorder.append(frame)
+    if "check" in command:
+        assert cli("golden", "record", "scenes/threads.yaml").code == 0
+    terminal = watched(monkeypatch)
+    result = cli(*command.split())
+    assert (result.code, LONG[command] in terminal.getvalue()) == (0, True)
+    assert terminal.lines()[-1] == ""
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    assert cli("compare", "out.h5", "out.h5").code == 0
+    assert sys.stderr.getvalue() == ""
 
 
 def test_a_run_outlives_its_terminal(monkeypatch):

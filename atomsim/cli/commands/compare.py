@@ -36,6 +36,7 @@ def compare(
         ),
     ] = 0.0,
 ) -> None:
+    from atomsim.cli.terminal.progress import Progress
     from atomsim.tasks.compare import first_difference
     from atomsim.trajectory import Trajectory
 
@@ -45,7 +46,8 @@ def compare(
         if one.header.n_atoms != other.header.n_atoms:
             say(f"different: {first} has {one.header.n_atoms} atoms, {second} {other.header.n_atoms}")
             raise typer.Exit(1)
-        difference = first_difference(one, other, one.header.groups, tolerance)
+        with Progress("frame") as progress:
+            difference = first_difference(progress.over(one), other, one.header.groups, tolerance)
         if difference is not None:
             say(f"different: {difference}")
             raise typer.Exit(1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,8 +17,6 @@ from atomsim.cli.voice import Command, explained
 from atomsim.errors import InputError, RunError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from atomsim.core.model import Frame, Model
     from atomsim.scene import LoadedScene
 
@@ -55,8 +55,8 @@ def record(scenes: Scenes, into: Folder = None, reason: Reason = "") -> None:
     for scene, inside, path in zip(scenes, loaded, paths, strict=True):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            _, frames = _computed(inside)
-            made = record_golden(frames)
+            with _computed(inside) as (_, frames):
+                made = record_golden(frames)
             last_round, digest = list(made.digests.items())[-1]
             write_golden(made, path)
             with (path.parent / LOG).open("a", encoding="utf-8", errors="backslashreplace") as log:
@@ -90,8 +90,8 @@ def check(scenes: Scenes, into: Folder = None, backend: Backend = "auto", thread
             say(f"{scene}: there is no golden {path}; record it with: {remedy}")
             continue
         approved = read_golden(path)
-        model, frames = _computed(inside, backend, threads)
-        wrong = check_golden(approved, frames, model.groups)
+        with _computed(inside, backend, threads) as (model, frames):
+            wrong = check_golden(approved, frames, model.groups)
         n_wrong += wrong is not None
         say(f"{scene}: {wrong or f'identical, {len(approved.digests)} rounds'}")
     if n_wrong:
@@ -123,9 +123,15 @@ def _paths(scenes: Sequence[Path], into: Path | None) -> list[Path]:
     return paths
 
 
-def _computed(inside: LoadedScene, backend: str = "auto", threads: int | None = None) -> tuple[Model, Iterator[Frame]]:
-    """Return a scene's model and its frames, computed as they are asked for."""
+@contextmanager
+def _computed(
+    inside: LoadedScene, backend: str = "auto", threads: int | None = None
+) -> Iterator[tuple[Model, Iterator[Frame]]]:
+    """Give a scene's model and its frames, computed as they are asked for, while a line tells how far they are."""
+    from atomsim.cli.terminal.progress import Progress
     from atomsim.tasks.prepare import prepare
 
     prepared = prepare(inside)
-    return prepared.model, prepared.frames(prepared.choose(backend, threads))
+    chosen = prepared.choose(backend, threads)
+    with Progress() as progress:
+        yield prepared.model, prepared.frames(chosen, report=lambda reached: progress.report(reached, prepared.rounds))

@@ -47,6 +47,7 @@ def measure(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is no table of atomsim's.")] = False,
 ) -> None:
+    from atomsim.cli.terminal.progress import Progress
     from atomsim.measures.series import columns_of
     from atomsim.measures.series import rows as measured_rows
     from atomsim.tasks import measure as tables
@@ -61,7 +62,8 @@ def measure(
         for notice in run.notices():
             tell(with_remedies(notice))
         if output is not None:
-            n_rows = tables.write_measures(run, measures, output, wanted)
+            with Progress("frame") as progress:
+                n_rows = tables.write_measures(run, measures, output, wanted, progress.report)
             say(f"{output}: {n_rows} frames")
             return
         asked, gauges = tables.resolved(run, measures)

@@ -23,9 +23,11 @@ from atomsim.cli.voice import explained
 def recover(
     trajectory: Annotated[Path, typer.Argument(metavar="OUT", help="The trajectory whose journal is left.")],
 ) -> None:
+    from atomsim.cli.terminal.progress import Progress
     from atomsim.trajectory import Trajectory
     from atomsim.trajectory import recover as rebuild
 
-    rebuild(trajectory)
+    with Progress("frame") as progress:
+        rebuild(trajectory, progress.report)
     with Trajectory(trajectory) as frames:
         say(f"{trajectory}: {len(frames)} frames up to round {frames.rounds[-1]} of {frames.header.rounds}")

@@ -54,6 +54,7 @@ def render(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that atomsim did not draw.")] = False,
 ) -> None:
+    from atomsim.cli.terminal.progress import Progress
     from atomsim.drawing.files import is_our_picture
     from atomsim.tasks import render as pictures
 
@@ -62,9 +63,16 @@ def render(
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
     if frames is not None:
-        written = pictures.render_frames(
-            trajectories, frames, rounds=rounds, camera=angles, size=pixels, notice=_notice
-        )
+        with Progress("picture") as progress:
+            written = pictures.render_frames(
+                trajectories,
+                frames,
+                rounds=rounds,
+                camera=angles,
+                size=pixels,
+                notice=_notice,
+                report=progress.report,
+            )
         say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
     first = trajectories[0]
@@ -72,7 +80,16 @@ def render(
     is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
     if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
         raise InputError(f"{picture} exists and atomsim did not draw it", Remedy("replace"))
-    pictures.render(trajectories, picture, rounds=rounds, camera=angles, size=pixels, notice=_notice)
+    with Progress("picture") as progress:
+        pictures.render(
+            trajectories,
+            picture,
+            rounds=rounds,
+            camera=angles,
+            size=pixels,
+            notice=_notice,
+            report=progress.report,
+        )
     say(str(picture))
 
 

@@ -29,6 +29,7 @@ def verify(
     backend: Backend = "auto",
     threads: Threads = None,
 ) -> None:
+    from atomsim.cli.terminal.progress import Progress
     from atomsim.tasks.compare import first_difference
     from atomsim.tasks.prepare import prepare_inside
     from atomsim.trajectory import Trajectory
@@ -38,8 +39,10 @@ def verify(
             tell(with_remedies(notice))
         last_round = int(recorded.rounds[-1])
         prepared = prepare_inside(recorded.header, trajectory, last_round)
-        computed = prepared.frames(prepared.choose(backend, threads))
-        difference = first_difference(recorded, computed, recorded.header.groups)
+        chosen = prepared.choose(backend, threads)
+        with Progress() as progress:
+            computed = prepared.frames(chosen, report=lambda reached: progress.report(reached, last_round))
+            difference = first_difference(recorded, computed, recorded.header.groups)
         if difference is not None:
             say(f"different: {difference} (first: the file; second: computed now)")
             raise typer.Exit(1)

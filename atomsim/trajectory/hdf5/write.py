@@ -30,18 +30,28 @@ UNIT_NOTE = (
 Group: TypeAlias = Any  # h5py has no types
 Dataset: TypeAlias = Any
 
+Report: TypeAlias = Callable[[int, int], object]
+"""Called with the number of frames written and that of all frames."""
 
-def write(journal: Journal, path: Path) -> None:
+
+def write(journal: Journal, path: Path, report: Report | None = None) -> None:
     """Write everything that is in a journal to a new HDF5 file, and see that it is on the disk.
+
+    Args:
+        journal: the frames and what belongs to them.
+        path: the file, which is not there yet.
+        report: hears how many frames of how many are written.
 
     Raises:
         OSError: the disk does not take it.
     """
     with Sink(path) as sink, held() as let_interrupts_through:
 
-        def between_pieces() -> None:
+        def between_pieces(n_written: int) -> None:
             sink.check()
             let_interrupts_through()
+            if report is not None:
+                report(n_written, len(journal.series))
 
         # Everything that could make two identical runs differ is switched off: times are not tracked, and the oldest
         # and newest form of the format that may be chosen are fixed.
@@ -63,7 +73,7 @@ def _write_identity(file: Group, program_version: str) -> None:
     creator.attrs["version"] = np.bytes_(program_version)
 
 
-def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[], None]) -> None:
+def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[int], None]) -> None:
     header, series = journal.header, journal.series
     atoms = file.create_group(PARTICLES)
     atoms.attrs["unit_note"] = np.bytes_(UNIT_NOTE)
@@ -89,7 +99,7 @@ def _write_frames(journal: Journal, file: Group, between_pieces: Callable[[], No
             value[start : start + len(piece)] = piece[name]
         for name, value in memory.items():
             value[start : start + len(piece)] = piece["memory"][name]
-        between_pieces()
+        between_pieces(start + len(piece))
     species = [np.full(group.stop - group.start, i, "<i4") for i, group in enumerate(header.groups)]
     atoms["mass"] = np.ones(header.n_atoms)
     atoms["species"] = np.concatenate(species)
