@@ -92,7 +92,7 @@ Number 0 is the group as written. With a list of copies, each copies what the on
 [9, 0, 0]}, {count: 2, step: [0, 6, 0]}]` makes four, of which 0 and 1 are 9 apart, and 0 and 2 are 6 apart.
 """
 
-FURTHER_EXAMPLES = {"string": ("from",)}
+FURTHER_EXAMPLES = {"string": ("from",), "push": ("towards",), "tether": ("foundation",)}
 """Of words that can be said in several ways."""
 
 NOTES = {

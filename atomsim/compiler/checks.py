@@ -73,10 +73,10 @@ def too_large_rest(path: KeyPath, rest: Rest) -> Iterator[Complaint]:
         yield Complaint((*path, "rest"), f"is {TOO_LARGE}")
 
 
-def too_large_target(path: KeyPath, target: Vector) -> Iterator[Complaint]:
+def too_large_point(path: KeyPath, point: Vector) -> Iterator[Complaint]:
     """Check that squares of differences from a fixed point are finite."""
-    if max(map(abs, target)) > LARGEST:
-        yield Complaint((*path, "target"), f"its numbers are {TOO_LARGE}")
+    if max(map(abs, point)) > LARGEST:
+        yield Complaint(path, f"its numbers are {TOO_LARGE}")
 
 
 def at_one_place(path: KeyPath, pairs: Pairs, what: str, selections: Selections) -> Iterator[Complaint]:

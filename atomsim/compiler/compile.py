@@ -33,6 +33,7 @@ from atomsim.core.model import (
     State,
     TetherForce,
     TorqueForce,
+    TowardsForce,
     Within,
 )
 from atomsim.core.pairs.bonded import bound_pairs
@@ -41,6 +42,7 @@ from atomsim.errors import Problem, SceneError
 from atomsim.scene import LoadedScene
 from atomsim.scene.language import Bonds, Collisions, Jitter, Rest, Scene
 from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
+from atomsim.scene.language.base import is_point
 from atomsim.scene.source import KeyPath, Source
 
 Array = TypeVar("Array", Floats, Indices)
@@ -191,7 +193,7 @@ class _Compiler:
                 case Gravity():
                     return [PushForce(origin, atoms, force.impulse, 0, None)]
                 case Push():
-                    return [PushForce(origin, atoms, force.impulse, force.from_round, force.until_round)]
+                    return list(self._pushes(origin, atoms, force))
                 case Oscillate():
                     return [OscillateForce(origin, atoms, force.impulse, force.period, force.phase)]
                 case Torque():
@@ -206,6 +208,22 @@ class _Compiler:
             self._complain_of_selection(path, force, error)
             return []
 
+    def _pushes(self, origin: Origin, atoms: Indices, force: Push) -> Iterable[ExternalForce]:
+        """Yield a push; if what it is directed at has copies, each of them draws the copy of the same number."""
+        window, magnitude = (force.from_round, force.until_round), force.magnitude or 0.0
+        if force.impulse is not None:
+            yield PushForce(origin, atoms, force.impulse, *window)
+        elif is_point(force.towards):
+            self._complain_all(checks.too_large_point(("forces", origin.name, "towards"), force.towards))
+            yield TowardsForce(origin, atoms, magnitude, force.towards, atoms[:0], *window)
+        else:
+            towards = tuple(str(expression) for expression in force.towards or ())
+            matched = [atoms], [self._selections.atoms(towards)]
+            if self._selections.n_copies(towards) > 1:
+                matched = self._selections.matched((force.acts_on, towards))
+            for pushed, centre in zip(*matched, strict=True):
+                yield TowardsForce(origin, _read_only(pushed), magnitude, (0.0, 0.0, 0.0), _read_only(centre), *window)
+
     def _torques(self, origin: Origin, force: Torque) -> Iterable[TorqueForce]:
         """Yield a torque for each copy of what it acts on, about its own centre or that of the copy of `about`."""
         x, y, z = unit(force.axis).tolist()
@@ -214,12 +232,15 @@ class _Compiler:
             yield TorqueForce(origin, _read_only(atoms), (x, y, z), force.magnitude, _read_only(about))
 
     def _tether(self, origin: Origin, atoms: Indices, force: Tether) -> list[ExternalForce]:
-        path = ("forces", origin.name)
-        if self._complain_all(checks.too_large_target(path, force.target)):
+        path, placed = ("forces", origin.name), self._placed[atoms]
+        if force.target == "initial":
+            target = placed
+        elif self._complain_all(checks.too_large_point((*path, "target"), force.target)):
             return []
-        initial = squared_distance(self._placed[atoms].T, np.array(force.target)[:, None])
-        rest_squared = self._rest_squared(path, force.rest, initial)
-        return [TetherForce(origin, atoms, force.target, _read_only(rest_squared))]
+        else:
+            target = np.broadcast_to(np.array(force.target), placed.shape)
+        rest_squared = self._rest_squared(path, force.rest, squared_distance(placed.T, target.T))
+        return [TetherForce(origin, atoms, _read_only(target), _read_only(rest_squared))]
 
     def _rest_squared(self, path: KeyPath, rest: Rest, initial: Floats) -> Floats:
         """Return r² per pair: the squared initial distance, without the detour through the root, or a number's."""

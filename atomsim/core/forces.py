@@ -19,6 +19,7 @@ from atomsim.core.model import (
     PushForce,
     TetherForce,
     TorqueForce,
+    TowardsForce,
 )
 from atomsim.core.pairs.collisions import as_index
 from atomsim.core.pairs.near import distinct
@@ -42,7 +43,7 @@ def oscillation(force: OscillateForce, round_index: int) -> float:
     return quantise(math.sin(2.0 * math.pi * round_index / force.period + force.phase))
 
 
-def is_pushing(force: PushForce, round_index: int) -> bool:
+def is_pushing(force: PushForce | TowardsForce, round_index: int) -> bool:
     """Return whether from_round ≤ round < until_round."""
     return round_index >= force.from_round and (force.until_round is None or round_index < force.until_round)
 
@@ -64,6 +65,8 @@ def law(force: ActingForce) -> Law:
             return _damping(force)
         case PushForce():
             return _push(force)
+        case TowardsForce():
+            return _push_towards(force)
         case OscillateForce():
             return _oscillate(force)
         case TorqueForce():
@@ -82,6 +85,8 @@ def strength(force: ActingForce) -> float | None:
     match force:
         case PushForce() | OscillateForce():
             return math.hypot(*force.impulse)
+        case TowardsForce():
+            return abs(force.magnitude)
         case DampingForce():
             return 0.0
         case TorqueForce() | TetherForce():
@@ -107,6 +112,25 @@ def _push(force: PushForce) -> Law:
     def apply(round_index: int, _: Floats, __: Floats, impulse: Floats) -> None:
         if is_pushing(force, round_index):
             impulse[:, atoms] += vector
+
+    return apply
+
+
+def _push_towards(force: TowardsForce) -> Law:
+    """j ← j + (magnitude/√q) · (t − c) with q = |t − c|², while the round is in its range; none at t itself.
+
+    √ is rounded exactly, as + − × ÷ are (IEEE 754).
+    """
+    atoms, centre = as_index(force.atoms), as_index(force.centre)
+    point, n_centre = np.array(force.target), float(force.centre.size)
+
+    def apply(round_index: int, position: Floats, _: Floats, impulse: Floats) -> None:
+        if is_pushing(force, round_index):
+            target = np.cumsum(position[:, centre], axis=1)[:, -1] / n_centre if n_centre else point
+            difference = target[:, None] - position[:, atoms]
+            squared = (difference[0] * difference[0] + difference[1] * difference[1]) + difference[2] * difference[2]
+            squared[squared == 0.0] = np.inf
+            impulse[:, atoms] += (force.magnitude / np.sqrt(squared)) * difference
 
     return apply
 
@@ -143,7 +167,7 @@ def _torque(force: TorqueForce) -> Law:
 
 def _tether(force: TetherForce) -> Law:
     """j ← j + (target − c) · (1 − r²/d²): a bond (paper section 2.3) to a fixed point; none at the point itself."""
-    atoms, target = as_index(force.atoms), np.array(force.target)[:, None]
+    atoms, target = as_index(force.atoms), force.target.T
 
     def apply(_: int, position: Floats, __: Floats, impulse: Floats) -> None:
         difference = target - position[:, atoms]

@@ -140,6 +140,22 @@ class PushForce:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class TowardsForce:
+    """j ← j + magnitude · (t − c)/|t − c| while from_round ≤ round < until_round (None: for ever).
+
+    t is the centroid of the atoms `centre` in that round, or the fixed point `target` where there are none of them.
+    """
+
+    origin: Origin
+    atoms: Indices
+    magnitude: float
+    target: tuple[float, float, float]
+    centre: Indices
+    from_round: int
+    until_round: int | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class OscillateForce:
     """j ← j + impulse · sin(2π·round/period + phase)."""
 
@@ -166,11 +182,18 @@ class TorqueForce:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TetherForce:
-    """The bond force of each atom towards a fixed point; `rest_squared` is (n_atoms of `atoms`,) [length²]."""
+    """The bond force of each atom towards a fixed point.
+
+    Attributes:
+        origin: the declaration.
+        atoms: the atoms, ascending.
+        target: the fixed point of each [length], (n_atoms of `atoms`, 3).
+        rest_squared: square of the desired distance r of each [length²], (n_atoms of `atoms`,).
+    """
 
     origin: Origin
     atoms: Indices
-    target: tuple[float, float, float]
+    target: Floats
     rest_squared: Floats
 
 
@@ -182,7 +205,7 @@ class HoldForce:
     atoms: Indices
 
 
-ActingForce: TypeAlias = DampingForce | PushForce | OscillateForce | TorqueForce | TetherForce
+ActingForce: TypeAlias = DampingForce | PushForce | TowardsForce | OscillateForce | TorqueForce | TetherForce
 ExternalForce: TypeAlias = ActingForce | HoldForce
 
 

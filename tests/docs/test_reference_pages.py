@@ -27,6 +27,8 @@ EXTRA_EXAMPLES = {
     "among",
     "except_bound",
     "from",
+    "towards",
+    "foundation",
     "copies",
     "rotate",
     "spin",

@@ -17,7 +17,7 @@ SOURCES = sorted(path for path in (ROOT / "atomsim").rglob("*.py") if "css_color
 RAISED = {
     "InputError", "RunError", "BlowUpError", "DamageError", "odd", "SelectionError", "RuleError", "MemoryError",
     "SelectionSyntaxError", "MeasureSyntaxError", "MeasureError", "PydanticCustomError", "Complaint", "Mistake",
-    "Problem", "problem", "refused", "_refused", "_refuse", "_complain", "_unreadable",
+    "Problem", "problem", "refused", "_refused", "_refuse", "_complain", "_unreadable", "refuse_together",
 }  # fmt: skip
 """By these a message leaves the code."""
 

@@ -115,6 +115,10 @@ FORCES: dict[str, Any] = {
     "crank": {"kind": "torque", "acts_on": "wheel[0:3]", "axis": "y", "magnitude": -0.2, "about": ["wheel", "hoop"]},
     "steps": {"kind": "torque", "acts_on": "leg", "axis": "x", "magnitude": 0.3},
     "kicks": {"kind": "torque", "acts_on": "foot[1:]", "axis": "z", "magnitude": 0.1, "about": "leg[0]"},
+    "draw": {"kind": "push", "acts_on": ["brick", "loose"], "towards": [0, 0, 1], "magnitude": 0.02, "from_round": 4},
+    "close": {"kind": "push", "acts_on": "leg[-1]", "towards": "shell", "magnitude": 0.03, "until_round": 30},
+    "part": {"kind": "push", "acts_on": "leg[0]", "towards": "foot", "magnitude": -0.02},
+    "bed": {"kind": "tether", "acts_on": ["shell[::3]", "floor"], "target": "initial"},
     "leash": {"kind": "tether", "acts_on": ["turned", "loose[0]"], "target": [6, 1, 0]},
     "anchor": {"kind": "tether", "acts_on": "hoop", "target": [-3, 1, 1], "rest": 0.5},
 }

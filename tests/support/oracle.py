@@ -97,6 +97,8 @@ class World:
                 return [(-(m * x), -(m * y), -(m * z)) for x, y, z in (self.velocity[atom] for atom in atoms)]
             case "gravity":
                 return [force["impulse"]] * len(atoms)
+            case "push" if force["towards"]:
+                return self._towards(force)
             case "push":
                 until = math.inf if force["until_round"] is None else force["until_round"]
                 is_on = force["from_round"] <= self.round_index < until
@@ -109,7 +111,8 @@ class World:
             case "torque":
                 return self._torque(force)
             case "tether":
-                return [self._pull(atom, force, r2) for atom, r2 in zip(atoms, force["rest_squared"], strict=True)]
+                pulled = zip(atoms, force["targets"], force["rest_squared"], strict=True)
+                return [self._pull(atom, target, r2) for atom, target, r2 in pulled]
             case "hold":
                 return [(0.0, 0.0, 0.0)] * len(atoms)
         raise ValueError(force["kind"])
@@ -128,8 +131,26 @@ class World:
         scale = force["magnitude"] / leverage
         return [(scale * x, scale * y, scale * z) for x, y, z in arms]
 
-    def _pull(self, atom: int, force: Data, r2: float) -> Vector:
-        x, y, z = sub(force["target"], self.position[atom])
+    def _towards(self, force: Data) -> list[Vector]:
+        until = math.inf if force["until_round"] is None else force["until_round"]
+        if not force["from_round"] <= self.round_index < until:
+            return [(0.0, 0.0, 0.0)] * len(force["atoms"])
+        if force["centre_atoms"]:
+            x, y, z = _sum([self.position[atom] for atom in force["centre_atoms"]])
+            n_atoms = len(force["centre_atoms"])
+            target = (x / n_atoms, y / n_atoms, z / n_atoms)
+        else:
+            target = force["towards"]
+        pushes = []
+        for atom in force["atoms"]:
+            x, y, z = sub(target, self.position[atom])
+            length = math.sqrt(square((x, y, z)))
+            weight = force["magnitude"] / length if length else 0.0
+            pushes.append((weight * x, weight * y, weight * z))
+        return pushes
+
+    def _pull(self, atom: int, target: Vector, r2: float) -> Vector:
+        x, y, z = sub(target, self.position[atom])
         weight = _bond_weight(square((x, y, z)), r2) if (x, y, z) != (0.0, 0.0, 0.0) else 0.0
         return (weight * x, weight * y, weight * z)
 
@@ -161,11 +182,30 @@ def _forces(entry: Data, groups: Groups, placed: list[Vector]) -> list[Data]:
             dict(entry, atoms=turned[number % len(turned)], about_atoms=about[number % len(about)])
             for number in range(n_copies)
         ]
+    if entry["kind"] == "push" and entry["towards"]:
+        return _pushes_towards(entry, groups)
     force = dict(entry, atoms=select(entry["acts_on"], groups))
     if entry["kind"] == "tether":
-        squares = [square(sub(entry["target"], placed[atom])) for atom in force["atoms"]]
+        is_own = entry["target"] == "initial"
+        force["targets"] = [placed[atom] if is_own else entry["target"] for atom in force["atoms"]]
+        squares = [
+            square(sub(target, placed[atom])) for atom, target in zip(force["atoms"], force["targets"], strict=True)
+        ]
         force["rest_squared"] = [rest_squared(entry["rest"], initial) for initial in squares]
     return [force]
+
+
+def _pushes_towards(entry: Data, groups: Groups) -> list[Data]:
+    """Return a push towards a point, or towards each copy of something."""
+    if not isinstance(entry["towards"][0], str):
+        return [dict(entry, atoms=select(entry["acts_on"], groups), centre_atoms=[])]
+    centres = select_by_copy(entry["towards"], groups)
+    if len(centres) == 1:
+        return [dict(entry, atoms=select(entry["acts_on"], groups), centre_atoms=centres[0])]
+    pushed = select_by_copy(entry["acts_on"], groups)
+    return [
+        dict(entry, atoms=pushed[number % len(pushed)], centre_atoms=centre) for number, centre in enumerate(centres)
+    ]
 
 
 def _bond_weight(square: float, r2: float) -> float:

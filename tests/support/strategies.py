@@ -149,17 +149,23 @@ def forces(choices: st.SearchStrategy[Any]) -> st.SearchStrategy[Data]:
         "damping": ({"coefficient": st.floats(0, 1)}, {}),
         "gravity": ({"impulse": small_vectors}, {}),
         "push": ({"impulse": small_vectors, "from_round": st.integers(0, 4)}, {"until_round": st.integers(5, 9)}),
+        "push towards": (
+            {"towards": choices | vectors, "magnitude": st.floats(-1, 1), "from_round": st.integers(0, 4)},
+            {"until_round": st.integers(5, 9)},
+        ),
         "hold": ({}, {}),
         "oscillate": (
             {"impulse": small_vectors, "period": st.floats(0.5, 20)},
             {"phase": st.floats(-math.pi, math.pi)},
         ),
         "torque": ({"axis": axes, "magnitude": st.floats(-1, 1)}, {"about": choices}),
-        "tether": ({"target": vectors}, {"rest": st.just("initial") | st.floats(0, 2)}),
+        "tether": ({"target": vectors | st.just("initial")}, {"rest": st.just("initial") | st.floats(0, 2)}),
     }
     return st.one_of(
         [
-            st.fixed_dictionaries({"kind": st.just(kind), **required}, optional={"acts_on": choices, **optional})
+            st.fixed_dictionaries(
+                {"kind": st.just(kind.split()[0]), **required}, optional={"acts_on": choices, **optional}
+            )
             for kind, (required, optional) in kinds.items()
         ]
     )

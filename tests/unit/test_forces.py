@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from support.running import after, atoms_at, compiled
 
+from atomsim.core.diagnosis.stiffness import largest_stiffness
 from atomsim.core.forces import acting, held_atoms, law, quantise
-from atomsim.core.model import Floats
+from atomsim.core.model import Floats, State
 
 PLACES: list[tuple[float, float, float]] = [(1, 0, 0), (0, 2, 0.5), (-1, -1, 3)]
 
@@ -131,3 +132,54 @@ def test_quantise_leaves_what_is_beyond_its_grain() -> None:
     assert quantise(1 / 3) == round(2**40 / 3) / 2**40
     for value in (2.0**12, -(2.0**50), 1e300, math.inf, -math.inf):
         assert quantise(value) == value
+
+
+def test_push_towards_a_point_has_its_magnitude_in_every_distance() -> None:
+    found = impulse(kind="push", towards=[0, 0, 0], magnitude=0.5)
+    for pushed, place in zip(found, PLACES, strict=True):
+        assert pushed == pytest.approx(-0.5 * np.array(place) / math.hypot(*place))
+    assert impulse(kind="push", towards=[0, 0, 0], magnitude=-0.5).tolist() == (-found).tolist()
+
+
+def test_push_towards_atoms_goes_to_their_centroid_and_nowhere_from_there() -> None:
+    found = impulse(kind="push", towards=["a[0]", "a[1]"], acts_on="a[:2]", magnitude=math.sqrt(5.25) / 2)
+    assert found == pytest.approx(np.array([[-0.5, 1, 0.25], [0.5, -1, -0.25], [0, 0, 0]]))
+    assert impulse(kind="push", towards="a[2]", acts_on="a[2]", magnitude=1).tolist() == np.zeros((3, 3)).tolist()
+
+
+@pytest.mark.parametrize(("round_index", "pushes"), [(4, False), (5, True), (7, True), (8, False)])
+def test_push_towards_lasts_as_any_push(round_index: int, pushes: bool) -> None:
+    found = impulse(round_index, kind="push", towards=[9, 9, 9], magnitude=1, from_round=5, until_round=8)
+    assert found.any() == pushes
+
+
+def test_push_towards_follows_what_moves() -> None:
+    groups = {"dog": atoms_at((0, 0, 0)), "cat": atoms_at((3, 0, 0), velocity=[0, 1, 0])}
+    chase = {"kind": "push", "acts_on": "dog", "towards": "cat", "magnitude": 1e-3}
+    model, state = compiled(groups, time_step=0.5, forces={"f": chase})
+    later = after(model, state, 12)  # the cat is at (3, 6, 0)
+    dog = after(model, later, 1).velocity[0] - later.velocity[0]
+    assert dog == pytest.approx(1e-3 * np.array([3, 6, 0]) / math.hypot(3, 6), rel=0.02)
+
+
+def test_push_towards_copies_draws_each_to_its_own() -> None:
+    groups = {
+        "a": {**atoms_at((1, 0, 0)), "copies": {"count": 3, "step": [0, 9, 0]}},
+        "b": {**atoms_at((0, 0, 0)), "copies": {"count": 3, "step": [0, 9, 0]}},
+    }
+    force = {"kind": "push", "acts_on": "a", "towards": "b", "magnitude": 0.25}
+    assert after(*compiled(groups, forces={"f": force}), 1).velocity[:3].tolist() == [[-0.25, 0, 0]] * 3
+
+
+def test_tether_to_where_each_atom_starts_is_a_spring_of_stiffness_one() -> None:
+    model, state = compiled({"a": atoms_at(*PLACES)}, forces={"f": {"kind": "tether", "target": "initial"}})
+    assert after(model, state, 100).position.tolist() == state.position.tolist()
+    moved = State(0, state.position + np.array([0.5, -0.25, 0]), state.velocity)
+    assert after(model, moved, 1).velocity.tolist() == [[-0.5, 0.25, 0]] * 3
+    assert largest_stiffness(model, moved) == pytest.approx(1)
+
+
+def test_tether_to_where_each_atom_starts_counts_from_before_jitter() -> None:
+    groups, forces = {"a": atoms_at(*PLACES)}, {"f": {"kind": "tether", "target": "initial"}}
+    model, state = compiled(groups, jitter={"amplitude": 0.1, "seed": 3}, forces=forces)
+    assert after(model, state, 1).velocity == pytest.approx(np.array(PLACES) - state.position)

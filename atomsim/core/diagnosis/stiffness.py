@@ -99,7 +99,7 @@ class _Springs:
         self._pairs = [(table.first, table.second, table.rest_squared) for table in model.bonds]
         self._pairs += [(first, second, np.full(first.size, CONTACT_SQUARED)) for first, second in contacts]
         self._tethers = [
-            (force.atoms, *_linearised(np.array(force.target)[:, None] - position[:, force.atoms], force.rest_squared))
+            (force.atoms, *_linearised(force.target.T - position[:, force.atoms], force.rest_squared))
             for force in model.forces
             if isinstance(force, TetherForce)
         ]

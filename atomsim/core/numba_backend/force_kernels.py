@@ -9,7 +9,7 @@ import numpy as np
 
 from atomsim.core.model import Floats
 from atomsim.core.numba_backend.jit import inner
-from atomsim.core.plans.force_plan import DAMPING, PUSH, TETHER, TORQUE
+from atomsim.core.plans.force_plan import DAMPING, PUSH, TETHER, TORQUE, TOWARDS
 from atomsim.core.plans.records import Forces
 
 
@@ -35,6 +35,12 @@ def add_forces(
         if kind == TORQUE:
             centre_x, centre_y, centre_z = _centroid(force, forces, position)
             strength = _strength(force, forces, position, centre_x, centre_y, centre_z)
+        elif kind == TOWARDS:
+            if pushes[force, 0] == 0.0:
+                continue
+            centre_x, centre_y, centre_z = number[0], number[1], number[2]
+            if forces.n_about[force] > 0.0:
+                centre_x, centre_y, centre_z = _centroid(force, forces, position)
         for run in range(forces.first_run[force], forces.first_run[force + 1]):
             first, last = max(start, forces.run_start[run]), min(stop, forces.run_stop[run])
             if kind == DAMPING:
@@ -44,8 +50,10 @@ def add_forces(
             elif kind == TORQUE:
                 _twist(first, last, number, strength, centre_x, centre_y, centre_z, position, impulse)
             elif kind == TETHER:
-                rest_squared = forces.rest_squared[forces.first_rest[run] + first - forces.run_start[run] :]
-                _tether(first, last, number, rest_squared, position, impulse)
+                begin = forces.first_rest[run] + first - forces.run_start[run]
+                _tether(first, last, forces.target[:, begin:], forces.rest_squared[begin:], position, impulse)
+            elif kind == TOWARDS:
+                _push_towards(first, last, number[3], centre_x, centre_y, centre_z, position, impulse)
     if outside.shape[1]:
         for component in range(3):
             for slot in range(start, stop):
@@ -74,14 +82,14 @@ def _push(first: int, last: int, vector: Floats, impulse: Floats) -> None:
 
 @inner
 def _centroid(force: int, forces: Forces, position: Floats) -> tuple[float, float, float]:
-    """Return the centre of a torque: the mean of positions, added one after the other; `number[4]` is their count."""
+    """Return the centre that a force needs: the mean of positions, added one after the other."""
     x, y, z = 0.0, 0.0, 0.0
     for run in range(forces.first_about_run[force], forces.first_about_run[force + 1]):
         for slot in range(forces.about_start[run], forces.about_stop[run]):
             x += position[0, slot]
             y += position[1, slot]
             z += position[2, slot]
-    count = forces.number[force, 4]
+    count = forces.n_about[force]
     return x / count, y / count, z / count
 
 
@@ -124,15 +132,31 @@ def _twist(
 
 @inner
 def _tether(first: int, last: int, target: Floats, rest_squared: Floats, position: Floats, impulse: Floats) -> None:
-    """j ← j + (target − c) · (1 − r²/d²); none at the point itself. `rest_squared` begins with the first atom's."""
+    """j ← j + (target − c) · (1 − r²/d²); none at the target. Both arrays begin with the first atom's."""
     for slot in range(first, last):
-        dx = target[0] - position[0, slot]
-        dy = target[1] - position[1, slot]
-        dz = target[2] - position[2, slot]
+        dx = target[0, slot - first] - position[0, slot]
+        dy = target[1, slot - first] - position[1, slot]
+        dz = target[2, slot - first] - position[2, slot]
         squared = (dx * dx + dy * dy) + dz * dz
         if squared == 0.0:
             squared = np.inf
         weight = 1.0 - rest_squared[slot - first] * (1.0 / squared)
+        impulse[0, slot] += weight * dx
+        impulse[1, slot] += weight * dy
+        impulse[2, slot] += weight * dz
+
+
+@inner
+def _push_towards(
+    first: int, last: int, magnitude: float, x: float, y: float, z: float, position: Floats, impulse: Floats
+) -> None:
+    """j ← j + (magnitude/√q) · (t − c) with t = (x, y, z) and q = |t − c|²; none at t itself."""
+    for slot in range(first, last):
+        dx, dy, dz = x - position[0, slot], y - position[1, slot], z - position[2, slot]
+        squared = (dx * dx + dy * dy) + dz * dz
+        if squared == 0.0:
+            squared = np.inf
+        weight = magnitude / np.sqrt(squared)
         impulse[0, slot] += weight * dx
         impulse[1, slot] += weight * dy
         impulse[2, slot] += weight * dz

@@ -17,10 +17,11 @@ from atomsim.core.model import (
     PushForce,
     TetherForce,
     TorqueForce,
+    TowardsForce,
 )
 from atomsim.core.plans.records import Forces
 
-DAMPING, PUSH, TORQUE, TETHER = range(4)
+DAMPING, PUSH, TORQUE, TETHER, TOWARDS = range(5)
 """What `Forces.kind` holds; a push is any force that is the same vector for all its atoms."""
 
 AHEAD = 256
@@ -33,9 +34,11 @@ def plan_forces(forces: Sequence[ActingForce], held: Indices, margin: int) -> Fo
     """Lay out forces in their order, and the atoms that are held after them; slots begin at `margin`."""
     none = np.empty(0, dtype=np.int64)
     acts_on = [runs_of(force.atoms, margin) for force in forces]
-    about = [runs_of(force.about if isinstance(force, TorqueForce) else none, margin) for force in forces]
+    centres = [_centre_of(force) for force in forces]
+    about = [runs_of(centre, margin) for centre in centres]
     coded = [_code(force) for force in forces]
     held_start, held_stop = runs_of(held, margin)
+    tethers = [force for force in forces if isinstance(force, TetherForce)]
     rest_squared = [force.rest_squared if isinstance(force, TetherForce) else np.empty(0) for force in forces]
     first_rest = []
     n_rest = 0
@@ -44,14 +47,16 @@ def plan_forces(forces: Sequence[ActingForce], held: Indices, margin: int) -> Fo
         n_rest += rest.size
     return Forces(
         kind=np.array([kind for kind, _ in coded], dtype=np.int64),
-        number=np.array([[*number, *[0.0] * (5 - len(number))] for _, number in coded]).reshape(-1, 5),
+        number=np.array([[*number, *[0.0] * (4 - len(number))] for _, number in coded]).reshape(-1, 4),
         first_run=_firsts([start.size for start, _ in acts_on]),
         run_start=np.concatenate([none, *(start for start, _ in acts_on)]),
         run_stop=np.concatenate([none, *(stop for _, stop in acts_on)]),
         first_about_run=_firsts([start.size for start, _ in about]),
         about_start=np.concatenate([none, *(start for start, _ in about)]),
         about_stop=np.concatenate([none, *(stop for _, stop in about)]),
+        n_about=np.array([float(centre.size) for centre in centres]),
         rest_squared=np.concatenate([np.empty(0), *rest_squared]),
+        target=np.concatenate([np.empty((3, 0)), *(force.target.T for force in tethers)], axis=1),
         first_rest=np.concatenate([none, *first_rest]),
         held_start=held_start,
         held_stop=held_stop,
@@ -66,15 +71,31 @@ def _code(force: ActingForce) -> tuple[int, Numbers]:
         case PushForce() | OscillateForce():
             return PUSH, ()
         case TorqueForce():
-            return TORQUE, (*force.axis, force.magnitude, float(force.about.size))
+            return TORQUE, (*force.axis, force.magnitude)
+        case TowardsForce():
+            return TOWARDS, (*force.target, force.magnitude)
         case TetherForce():
-            return TETHER, force.target
+            return TETHER, ()
         case _:
             assert_never(force)
 
 
+def _centre_of(force: ActingForce) -> Indices:
+    """Return the atoms whose centroid a force needs."""
+    match force:
+        case TorqueForce():
+            return force.about
+        case TowardsForce():
+            return force.centre
+        case _:
+            return np.empty(0, dtype=np.int64)
+
+
 class Pushes:
-    """The vectors that forces add uniformly, computed for some rounds ahead."""
+    """The vectors that forces add uniformly, computed for some rounds ahead.
+
+    Of a push towards something x tells whether it acts, as 1 or 0.
+    """
 
     def __init__(self, forces: Sequence[ActingForce]) -> None:
         self._forces = forces
@@ -90,6 +111,8 @@ class Pushes:
                 if isinstance(force, (PushForce, OscillateForce)):
                     share = np.array([_share_of(force, each) for each in self._rounds])
                     self._vectors[:, number] = share[:, None] * force.impulse
+                elif isinstance(force, TowardsForce):
+                    self._vectors[:, number, 0] = [is_pushing(force, each) for each in self._rounds]
         place = round_index - self._rounds.start
         return self._vectors[place : place + n_rounds]
 

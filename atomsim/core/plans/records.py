@@ -157,15 +157,17 @@ class Forces(NamedTuple):
 
     Attributes:
         kind: which law, one of the constants of `force_plan.py`, (n_forces,).
-        number: its constants, (n_forces, 5); see the laws.
+        number: its constants, (n_forces, 4); see the laws.
         first_run: (n_forces + 1,).
         run_start: runs of consecutive slots that are acted on; increasing within a force.
         run_stop: one past the end of each run.
         first_about_run: (n_forces + 1,).
         about_start: runs of the atoms whose centroid is the centre.
         about_stop: one past the end of each run.
+        n_about: how many these atoms are, (n_forces,).
         rest_squared: r² per atom acted on, for tethers [length²].
-        first_rest: where in it each run begins.
+        target: the fixed point of each of these atoms [length], (3, n).
+        first_rest: where in both each run begins.
         held_start: runs of the slots that are held after all forces.
         held_stop: one past the end of each run.
     """
@@ -178,7 +180,9 @@ class Forces(NamedTuple):
     first_about_run: Indices
     about_start: Indices
     about_stop: Indices
+    n_about: Floats
     rest_squared: Floats
+    target: Floats
     first_rest: Indices
     held_start: Indices
     held_stop: Indices

@@ -13,7 +13,9 @@ from atomsim.core.model import (
     OscillateForce,
     PushForce,
     TorqueForce,
+    TowardsForce,
 )
+from atomsim.core.pairs.near import distinct
 from atomsim.findings.finding import Remedy, Symptom
 from atomsim.findings.subject import Subject
 
@@ -29,16 +31,24 @@ MOST_SINES = 1_000_000
 
 def force_never_acts(subject: Subject) -> Iterator[Symptom]:
     """Find impulses of zero, windows beyond the run, sines that stay at zero, and torques without a lever."""
-    for force in subject.model.forces:
-        found = _why(force, subject)
-        if found is not None:
-            message, keys = found
+    for name, forces in _by_name(subject).items():
+        found = [_why(force, subject) for force in forces]
+        if found[0] is not None and None not in found:
+            message, keys = found[0]
             yield Symptom(
-                at=("forces", force.origin.name),
-                names=(("forces", force.origin.name), *subject.group_paths(force.atoms)),
+                at=("forces", name),
+                names=(("forces", name), *subject.group_paths(distinct([force.atoms for force in forces]))),
                 message=message,
-                remedy={"forces": {force.origin.name: keys}},
+                remedy={"forces": {name: keys}},
             )
+
+
+def _by_name(subject: Subject) -> dict[str, list[ExternalForce]]:
+    """Return the forces of each declaration: one that goes copy by copy is several."""
+    named: dict[str, list[ExternalForce]] = {}
+    for force in subject.model.forces:
+        named.setdefault(force.origin.name, []).append(force)
+    return named
 
 
 def _why(force: ExternalForce, subject: Subject) -> tuple[str, Remedy | None] | None:
@@ -47,7 +57,7 @@ def _why(force: ExternalForce, subject: Subject) -> tuple[str, Remedy | None] | 
     match force:
         case PushForce() if not any(force.impulse):
             return "`impulse` is zero, so this force does nothing", None
-        case PushForce() if force.from_round >= rounds:
+        case PushForce() | TowardsForce() if force.from_round >= rounds:
             return (
                 f"this begins in round {force.from_round}, when the run is over: its last round is {rounds - 1}",
                 {"from_round": 0},
@@ -60,7 +70,7 @@ def _why(force: ExternalForce, subject: Subject) -> tuple[str, Remedy | None] | 
                 f"{LEAST_SINE:g} in every round of the run",
                 {"phase": round(math.pi / 2, 4)},
             )
-        case TorqueForce() if force.magnitude == 0.0:
+        case TorqueForce() | TowardsForce() if force.magnitude == 0.0:
             return "`magnitude` is zero, so this force does nothing", None
         case TorqueForce() if _longest_lever(force, subject) < SHORTEST_LEVER:
             return (

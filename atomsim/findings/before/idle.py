@@ -49,7 +49,7 @@ def _anything_moves(subject: Subject) -> bool:
     placed = subject.placed.T
     for force in model.forces:
         if isinstance(force, TetherForce):
-            away = np.sqrt(((placed[:, force.atoms] - np.array(force.target)[:, None]) ** 2).sum(axis=0))
+            away = np.sqrt(((placed[:, force.atoms] - force.target.T) ** 2).sum(axis=0))
             if (np.abs(away - np.sqrt(force.rest_squared)) > STRESS).any():
                 return True
     for table in model.bonds:

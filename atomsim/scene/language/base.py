@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeGuard, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -50,6 +50,12 @@ def require_one(declaration: Declaration, *keys: str) -> None:
         found = " and ".join(f"`{key}`" for key in given) if given else "none"
         context = {"names": names, "found": found}
         raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)
+
+
+def refuse_together(is_wrong: bool, message: str) -> None:
+    """Refuse keys that make no sense together."""
+    if is_wrong:
+        raise PydanticCustomError("together", message)
 
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -175,10 +181,12 @@ def _check_selection(value: str) -> str:
     return normalised(value)
 
 
-_SELECTION_SCHEMA = {
-    "title": "selection",
-    "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}],
-}
+_SELECTION_FORMS: list[dict[str, Any]] = [
+    {"type": "string"},
+    {"type": "array", "items": {"type": "string"}, "minItems": 1},
+]
+
+_SELECTION_SCHEMA = {"title": "selection", "anyOf": _SELECTION_FORMS}
 
 SelectionText = Annotated[str, AfterValidator(_check_selection)]
 """One selection expression: `ring`, `ring[0:10]`, `floor[0, :]` or `all`."""
@@ -196,6 +204,54 @@ Selection = Annotated[
 
 Pair = Annotated[tuple[Selection, Selection], Field(strict=False)]
 """Two selections."""
+
+
+def _check_point(value: Any, otherwise: str) -> Any:
+    """Return a point [x, y, z] as three floats."""
+    is_point = isinstance(value, (list, tuple)) and len(value) == 3
+    if not is_point or not all(is_finite_number(part) for part in value):
+        raise PydanticCustomError("point", "needs a point [x, y, z] or {otherwise}", {"otherwise": otherwise})
+    return tuple(float(part) for part in value)
+
+
+def is_finite_number(value: Any) -> bool:
+    """Tell whether a value is a number that computing can begin with."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < float("inf")
+
+
+def _check_target(value: Any) -> Any:
+    return value if value == "initial" else _check_point(value, "`initial`")
+
+
+_POINT_SCHEMA = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+
+Target = Annotated[
+    Vector | Literal["initial"],
+    Field(title="[x, y, z] or initial"),
+    BeforeValidator(_check_target),
+    WithJsonSchema({"anyOf": [{"const": "initial"}, _POINT_SCHEMA]}),
+]
+"""A fixed point, or `initial`: for each atom where it starts."""
+
+
+def _check_towards(value: Any) -> Any:
+    if isinstance(value, (list, tuple)) and not any(isinstance(part, str) for part in value):
+        return _check_point(value, "a selection such as `palm`")
+    return tuple(_check_selection(part) if isinstance(part, str) else part for part in _as_list(value))
+
+
+def is_point(towards: Vector | tuple[str, ...] | None) -> TypeGuard[Vector]:
+    """Tell whether a push is directed at a point, not at a selection."""
+    return towards is not None and not any(isinstance(part, str) for part in towards)
+
+
+Towards = Annotated[
+    Vector | tuple[SelectionText, ...],
+    Field(title="selection or [x, y, z]"),
+    BeforeValidator(_check_towards),
+    WithJsonSchema({"anyOf": [*_SELECTION_FORMS, _POINT_SCHEMA]}),
+]
+"""What a push is directed at: a point, or the centroid of a selection."""
 
 
 def _check_rest(value: Any) -> Any:

@@ -14,7 +14,11 @@ from atomsim.scene.language.base import (
     Rest,
     Round,
     Selection,
+    Target,
+    Towards,
     Vector,
+    refuse_together,
+    require_one,
 )
 
 
@@ -47,9 +51,13 @@ class Push(ForceBase):
     """An impulse for a while."""
 
     kind: Literal["push"]
-    """A constant impulse per round while from_round ≤ round < until_round."""
-    impulse: Vector
-    """The impulse per round [velocity]."""
+    """The same impulse in every round, or one `towards` something, while from_round ≤ round < until_round."""
+    impulse: Vector | None = None
+    """The impulse per round [velocity]; or say `towards` and `magnitude`."""
+    towards: Towards | None = None
+    """Where each atom is pushed: a point [x, y, z], or a selection, whose centroid it is in every round."""
+    magnitude: Number | None = None
+    """With `towards`: the size of the impulse per round [velocity]; below zero it pushes away."""
     from_round: Round = 0
     """The first round that pushes."""
     until_round: Round | None = None
@@ -59,6 +67,12 @@ class Push(ForceBase):
     def _check_rounds(self) -> Push:
         if self.until_round is not None and self.until_round <= self.from_round:
             raise PydanticCustomError("push_rounds", "`until_round` must be above `from_round`, or nothing is pushed")
+        return self
+
+    @model_validator(mode="after")
+    def _check_way(self) -> Push:
+        require_one(self, "impulse", "towards")
+        refuse_together((self.towards is None) != (self.magnitude is None), "`towards` and `magnitude` go together")
         return self
 
 
@@ -100,10 +114,10 @@ class Tether(ForceBase):
 
     kind: Literal["tether"]
     """The bond force towards `target`."""
-    target: Vector
-    """The fixed point [length]."""
+    target: Target
+    """The fixed point [length]; or `initial`: of each atom the place where it starts, an elastic foundation."""
     rest: Rest = "initial"
-    """The desired distance: `initial` (the distance at the start) or a number [length]."""
+    """The desired distance: `initial` (the distance at the start; none from its own place) or a number [length]."""
 
 
 Force = Annotated[

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import (
     Axis,
@@ -18,6 +17,7 @@ from atomsim.scene.language.base import (
     Positive,
     Vector,
     as_tuple,
+    refuse_together,
     require_one,
 )
 
@@ -44,12 +44,6 @@ Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(as_tuple), OneOrList
 """A turn, or a list of turns."""
 
 
-def _refuse(is_wrong: bool, message: str) -> None:
-    """Refuse keys that make no sense together."""
-    if is_wrong:
-        raise PydanticCustomError("together", message)
-
-
 class Copies(Declaration):
     """Copies of a group about an axis or along a line, each one a part with a number of its own: `finger.0`."""
 
@@ -68,7 +62,7 @@ class Copies(Declaration):
     def _check_way(self) -> Copies:
         require_one(self, "step", "axis")
         is_about_none = self.axis is None and (self.through is not None or self.degrees is not None)
-        _refuse(is_about_none, "`through` and `degrees` go with `axis`")
+        refuse_together(is_about_none, "`through` and `degrees` go with `axis`")
         return self
 
 
@@ -118,11 +112,13 @@ class StringGroup(GroupBase):
     def _check_way(self) -> StringGroup:
         require_one(self, "step", "to")
         require_one(self, "count", "spacing")
-        _refuse(self.to is not None and self.from_ is None, "`to` goes with `from`")
-        _refuse(self.spacing is not None and self.to is None, "`spacing` goes with `from` and `to`")
-        _refuse(self.from_ is not None and self.centre is not None, "`centre` and `from` both say where; write one")
-        _refuse(self.to is not None and self.to == self.from_, "`from` and `to` are the same place")
-        _refuse(self.to is not None and self.count == 1, "from here to there it takes a `count` of 2 or more")
+        refuse_together(self.to is not None and self.from_ is None, "`to` goes with `from`")
+        refuse_together(self.spacing is not None and self.to is None, "`spacing` goes with `from` and `to`")
+        refuse_together(
+            self.from_ is not None and self.centre is not None, "`centre` and `from` both say where; write one"
+        )
+        refuse_together(self.to is not None and self.to == self.from_, "`from` and `to` are the same place")
+        refuse_together(self.to is not None and self.count == 1, "from here to there it takes a `count` of 2 or more")
         return self
 
 

@@ -245,6 +245,11 @@ def test_a_force_on_some_held_atoms_acts_on_the_others() -> None:
         ("{kind: oscillate, acts_on: upper, impulse: [1, 0, 0], period: 1e6, phase: 3.14}",
          "sin(2π·round/1e+06 + 3.14) is below 0.01 in every round of the run"),
         ("{kind: oscillate, acts_on: upper, impulse: [1, 0, 0], period: 9}", None),
+        ("{kind: push, acts_on: upper, towards: floor, magnitude: 0}",
+         "`magnitude` is zero, so this force does nothing"),
+        ("{kind: push, acts_on: upper, towards: [0, 0, 9], magnitude: 1, from_round: 100}",
+         "this begins in round 100, when the run is over: its last round is 99"),
+        ("{kind: push, acts_on: upper, towards: floor, magnitude: -1}", None),
         ("{kind: torque, acts_on: upper, axis: z, magnitude: 0}", "`magnitude` is zero, so this force does nothing"),
         ("{kind: torque, acts_on: 'upper[13]', axis: z, magnitude: 1}",
          "all its atoms lie on the axis, where a torque does nothing, or, a hair beside it, throws them away; choose "
@@ -270,6 +275,19 @@ forces: {motor: {kind: torque, axis: [1, 1, 1], magnitude: 1}}
     )
     (never,) = found(text, "force-never-acts")
     assert never.remedy == "forces:\n  motor: {axis: x}"
+
+
+def test_a_torque_on_copies_is_told_once_and_only_if_none_of_them_has_a_lever() -> None:
+    text = (
+        HEAD
+        + """\
+  axle: {shape: string, count: 9, step: [0.3, 0, 0], velocity: [1, 0, 0], copies: {count: 3, axis: AXIS}}
+forces: {motor: {kind: torque, acts_on: axle, axis: x, magnitude: 1}}
+"""
+    )
+    (never,) = found(text.replace("AXIS", "x"), "force-never-acts")
+    assert never.names == ("forces.motor", "groups.axle")
+    assert found(text.replace("AXIS", "z"), "force-never-acts") == []
 
 
 def test_collisions_of_what_is_held() -> None:
