@@ -41,8 +41,8 @@ from atomsim.core.pairs.near import pair_squares, squared_distance
 from atomsim.errors import Problem, SceneError
 from atomsim.scene import LoadedScene
 from atomsim.scene.language import Bonds, Collisions, Jitter, Rest, Scene
-from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
 from atomsim.scene.language.base import is_point
+from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
 from atomsim.scene.source import KeyPath, Source
 
 Array = TypeVar("Array", Floats, Indices)
