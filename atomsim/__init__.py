@@ -12,6 +12,7 @@ In a notebook:
     with atomsim.Trajectory("out.h5") as trajectory:     # a sequence of frames
         trajectory[-1].position
     atomsim.measure("out.h5", "height of left")          # numbers over its frames
+    atomsim.events("out.h5")                             # what happened
     atomsim.render("out.h5", "out.png")                  # the strip
 
 Names are loaded when they are first used, so that `import atomsim` costs nothing.
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from atomsim.core.simulate import simulate
     from atomsim.errors import AtomsimError, BlowUpError, InputError, RunError, SceneError
     from atomsim.scene.loader import LoadedScene, load, loads
-    from atomsim.tasks.measure import measure
+    from atomsim.tasks.measure import events, measure
     from atomsim.tasks.render import render, render_frames
     from atomsim.tasks.run import resume, run
     from atomsim.tasks.simulation import SceneSimulation as Simulation
@@ -47,6 +48,7 @@ _HOMES = {
     "Simulation": "atomsim.tasks.simulation:SceneSimulation",
     "State": "atomsim.core.model",
     "Trajectory": "atomsim.trajectory",
+    "events": "atomsim.tasks.measure",
     "load": "atomsim.scene.loader",
     "loads": "atomsim.scene.loader",
     "measure": "atomsim.tasks.measure",
@@ -70,6 +72,7 @@ __all__ = [
     "State",
     "Trajectory",
     "compile",
+    "events",
     "load",
     "loads",
     "measure",

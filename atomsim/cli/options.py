@@ -53,19 +53,6 @@ def _meant(text: str) -> str:
     return f"{hint} (got {readable(text)})"
 
 
-def rounds_in(text: str | None) -> list[int] | None:
-    """Read rounds with commas between, such as `0,250,500`."""
-    if text is None:
-        return None
-    try:
-        rounds = [int(part) for part in text.split(",")]
-    except ValueError:
-        rounds = [-1]
-    if any(round_index < 0 for round_index in rounds):
-        raise InputError(f"--rounds needs whole numbers with commas between, as in 0,250,500 (got {text})")
-    return rounds
-
-
 def file_to_write(option: str) -> Callable[[str], Path]:
     """Return what reads the value of an option as the name of a file, which no option and no stream is."""
 

@@ -13,7 +13,7 @@ from atomsim.compiler.selections import Selections, lay_out
 from atomsim.core.gauges import motion, near, rigid, shape
 from atomsim.core.gauges.block import Atoms, Gauge
 from atomsim.core.gauges.recorded import Recorded
-from atomsim.core.gauges.winding import Winding
+from atomsim.core.gauges.strings import Crossings, Winding
 from atomsim.core.model import BondTable, CollisionTable, Floats, Indices, Model, State
 from atomsim.core.pairs.collisions import as_index
 from atomsim.scene.language import Scene
@@ -145,6 +145,8 @@ class _Resolver:
                 return near.Overlap(self._gap())
             case "winding":
                 return self._winding()
+            case "crossings":
+                return self._crossings()
             case "energy":
                 return Recorded(("kinetic_energy", "potential_energy_bonds", "potential_energy_collisions"))
             case "bond energy":
@@ -190,6 +192,12 @@ class _Resolver:
         self._require_two(string, "cannot wind about anything")
         self._require_two(body, "has no axis to wind about")
         return Winding(as_index(string), as_index(body))
+
+    def _crossings(self) -> Crossings:
+        left, right = self._sides()
+        for string in (left, right):
+            self._require_two(string, "crosses nothing")
+        return Crossings(as_index(left), as_index(right))
 
     def _strain(self, which: Literal["max", "min", "mean"]) -> shape.Strain:
         """Gather the bonds of a rule, or those inside a selection, that have a length to be strained from."""

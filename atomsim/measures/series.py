@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from atomsim.core.model import Floats, Indices
 from atomsim.scene.language.measures import Measure, MeasureSyntaxError, parse_measure
 from atomsim.scene.language.selection import SelectionSyntaxError
 from atomsim.trajectory import Trajectory
+
+Key = TypeVar("Key")
 
 
 class Rows(NamedTuple):
@@ -116,3 +118,10 @@ def _blocks(trajectory: Trajectory, gauges: Sequence[Gauge], frames: Indices) ->
         yield Block(nothing, nothing, {name: series[frames] for name, series in trajectory.observables.items()})
         return
     yield from blocks(trajectory[int(frame)] for frame in frames)
+
+
+def series_of(trajectory: Trajectory, gauges: Mapping[Key, Gauge]) -> dict[Key, Floats]:
+    """Measure all frames in one pass and return a series for each gauge, (n_frames, its n_columns)."""
+    table = np.concatenate([part.values for part in rows(trajectory, list(gauges.values()))])
+    ends = np.cumsum([gauge.n_columns for gauge in gauges.values()])
+    return dict(zip(gauges, np.split(table, ends[:-1], axis=1), strict=True))

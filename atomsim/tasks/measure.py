@@ -1,36 +1,33 @@
-"""Measures of trajectories, as arrays and as files; knows no terminal."""
+"""Measures of trajectories, and the events in them."""
 
 from __future__ import annotations
 
-import csv
-import io
 import os
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import nullcontext, suppress
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from functools import cache
-from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
 
+from atomsim import arguments
 from atomsim.compiler.gauges import MeasureError, Subject, gauge_of
 from atomsim.compiler.selections import SelectionError
 from atomsim.core.gauges.block import Gauge
 from atomsim.core.model import Floats, Model
-from atomsim.disk import behind, whole_file
-from atomsim.errors import InputError, Notice
-from atomsim.measures.series import Measured, columns_of, measured, rows
+from atomsim.errors import InputError
+from atomsim.measures.events import Event
+from atomsim.measures.find import find_events
+from atomsim.measures.parts import pairs_of, parts_of
+from atomsim.measures.series import Measured, measured
 from atomsim.scene.language import Scene
 from atomsim.scene.language.forces import Hold
-from atomsim.scene.language.measures import Measure, MeasureSyntaxError, parse_measure
+from atomsim.scene.language.measures import COMPONENTS, Measure, MeasureSyntaxError, parse_measure
 from atomsim.scene.language.selection import SelectionSyntaxError
 from atomsim.tasks.recompute import compile_inside, laid_out_inside
+from atomsim.tasks.rounds import chosen, wishes
 from atomsim.trajectory import Trajectory
 
-Hear: TypeAlias = Callable[[Notice], None]
-
-LEADING = ("round", "time")
-"""The columns before those of the measures."""
+MEASURES = "measures, such as `height of ring`, at least one"
 
 MOST_GROUPS = 4
 """Of so many groups height and speed are measured where nobody says what to measure."""
@@ -40,7 +37,7 @@ def measure(
     trajectory: str | os.PathLike[str] | Trajectory,
     measures: str | Sequence[str] | None = None,
     *,
-    rounds: Sequence[int] | None = None,
+    rounds: str | Sequence[int] | None = None,
 ) -> Measured:
     """Measure the frames of a run.
 
@@ -48,7 +45,8 @@ def measure(
         trajectory: a file, or one that is open.
         measures: such as `height of ring` or `["gap between ring and floor", "energy"]`; by default the height and
             the speed of the first groups that move.
-        rounds: which rounds; the frames recorded nearest to them are taken. By default all frames.
+        rounds: which rounds, as numbers or as a text such as `"0-2000:100"`; the frames recorded nearest to them are
+            taken. By default all frames.
 
     Returns:
         The rounds, the times, and an array for every measure.
@@ -56,82 +54,31 @@ def measure(
     Raises:
         InputError: no trajectory, no measure, or one that makes no sense for these atoms.
     """
-    opened = nullcontext(trajectory) if isinstance(trajectory, Trajectory) else Trajectory(trajectory)
-    with opened as run:
+    with _opened(trajectory) as run:
         return measured(run, *resolved(run, measures), frames_at(run, rounds))
 
 
-def write_measures(
-    trajectory: Trajectory,
-    measures: Sequence[str] | None,
-    path: Path,
-    rounds: Sequence[int] | None = None,
-    report: Callable[[int, int], object] | None = None,
-) -> int:
-    """Measure frames into a CSV file, row by row; every number is written so that reading it gives it back.
+def events(trajectory: str | os.PathLike[str] | Trajectory) -> list[Event]:
+    """Find out what happened in a run: contacts, bounces, falls and the like.
 
     Args:
-        trajectory: the run.
-        measures: as of `measure`.
-        path: the file.
-        rounds: as of `measure`.
-        report: hears how many frames of how many are measured.
+        trajectory: a file, or one that is open.
 
     Returns:
-        The number of rows.
+        The events in the order of their rounds; `str` says each in words.
 
     Raises:
-        InputError: as of `measure`.
-        RunError: the file cannot be written.
+        InputError: no trajectory.
     """
-    asked, gauges = resolved(trajectory, measures)
-    frames = frames_at(trajectory, rounds)
-    n_rows, n_frames = 0, len(trajectory if frames is None else frames)
-    with whole_file(path) as file:
-        file.write(_lines([[*LEADING, *columns_of(asked)]]))
-        for part in rows(trajectory, gauges, frames):
-            columns = (column.tolist() for column in part)
-            file.write(_lines([round_index, time, *values] for round_index, time, values in zip(*columns, strict=True)))
-            n_rows += len(part.round)
-            if report is not None:
-                report(n_rows, n_frames)
-    return n_rows
+    with _opened(trajectory) as run:
+        scene = laid_out_inside(run.header, run.path).scene
+        parts = parts_of(scene, run.header.bond)
+        return find_events(run, parts, pairs_of(scene, parts), COMPONENTS.index(scene.render.camera.up))
 
 
-def _lines(cells: Iterable[Iterable[object]]) -> bytes:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(cells)
-    return text.getvalue().encode()
-
-
-def is_our_table(path: Path) -> bool:
-    """Tell whether a file is a table of measures that atomsim wrote: its first line says so."""
-    with suppress(OSError, ValueError), path.open(encoding="utf-8", newline="") as file:
-        names = next(csv.reader([file.readline(1 << 20)]), [])
-        return tuple(names[:2]) == LEADING and all(map(_is_column, names[2:]))
-    return False
-
-
-def _is_column(name: str) -> bool:
-    try:
-        return parse_measure(name).columns == (name,)
-    except (MeasureSyntaxError, SelectionSyntaxError):
-        return False
-
-
-def check_table(path: Path) -> None:
-    """Refuse a name that cannot become a table, before any work is done for it.
-
-    Raises:
-        InputError: another extension, a folder, or a folder that does not exist.
-    """
-    if path.suffix.lower() != ".csv":
-        raise InputError(f"{path}: a table of measures is written as .csv")
-    if path.is_dir():
-        raise InputError(f"{path}: this is a folder; give the name of a file")
-    folder = behind(path).parent
-    if not folder.is_dir():
-        raise InputError(f"{path}: the folder {folder} does not exist")
+def _opened(trajectory: str | os.PathLike[str] | Trajectory) -> AbstractContextManager[Trajectory]:
+    """Open a file for as long as it is needed; what is open already stays open."""
+    return nullcontext(trajectory) if isinstance(trajectory, Trajectory) else Trajectory(trajectory)
 
 
 def resolved(
@@ -147,9 +94,8 @@ def resolved(
     if measures is None:
         asked = default_measures(scene, subject)
     else:
-        asked = tuple(map(read_measure, [measures] if isinstance(measures, str) else measures))
-    if not asked:
-        raise InputError("name a measure, such as `energy`")
+        texts = [measures] if isinstance(measures, str) else arguments.sequence("measures", measures, MEASURES)
+        asked = tuple(map(read_measure, texts))
     return asked, tuple(_gauge(one, subject) for one in asked)
 
 
@@ -160,7 +106,7 @@ def read_measure(text: str) -> Measure:
         InputError: the text is none.
     """
     try:
-        return parse_measure(text)
+        return parse_measure(arguments.instance("measures", text, str, MEASURES))
     except MeasureSyntaxError as error:
         raise InputError(str(error)) from None
     except SelectionSyntaxError as error:
@@ -195,7 +141,7 @@ def default_measures(scene: Scene, subject: Subject) -> tuple[Measure, ...]:
     )
 
 
-def frames_at(trajectory: Trajectory, rounds: Sequence[int] | None) -> list[int] | None:
+def frames_at(trajectory: Trajectory, rounds: str | Sequence[int] | None) -> list[int] | None:
     """Return which frames were recorded nearest to some rounds, ascending; None for all.
 
     Raises:
@@ -203,13 +149,12 @@ def frames_at(trajectory: Trajectory, rounds: Sequence[int] | None) -> list[int]
     """
     if rounds is None:
         return None
-    recorded = trajectory.rounds
-    beyond = [round_index for round_index in rounds if not 0 <= round_index <= recorded[-1]]
-    if beyond:
-        raise InputError(f"{trajectory.path}: there is no round {beyond[0]}; it ends at round {recorded[-1]}")
-    if not len(rounds):
-        raise InputError("name a round to measure, or leave `rounds` out for all frames")
-    return sorted({int(abs(recorded - round_index).argmin()) for round_index in rounds})
+    asked = wishes(rounds)
+    try:
+        places = chosen(asked, trajectory.rounds)[1]
+    except InputError as error:
+        raise InputError(f"{trajectory.path}: {error}") from None
+    return sorted(set(places.tolist()))
 
 
 def _gauge(asked: Measure, subject: Subject) -> Gauge:

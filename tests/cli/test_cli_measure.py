@@ -13,6 +13,10 @@ TABLE = """\
        20           1         5.90712       0.141555
 """
 
+ALL_FRAMES = "--events looks at all frames; measures and --rounds do not go with it"
+
+IS_A_SCENE = "scenes/ring.yaml: is a scene, not a trajectory of atomsim; to run it: atomsim run scenes/ring.yaml"
+
 
 @pytest.fixture
 def ring(cli):
@@ -52,6 +56,22 @@ def test_a_table_is_written_and_replaced(cli):
     assert present() == ["behind.csv", "ring.csv", "ring.h5", "scenes"]
 
 
+EVENTS = """\
+    round        time  event
+       10         0.5  ring touches surface
+"""
+
+
+@pytest.mark.usefixtures("ring")
+def test_what_happened_is_printed_or_written(cli):
+    result = cli("measure", "ring.h5", "--events")
+    assert (result.code, result.out, result.err) == (0, EVENTS, "")
+    for _ in range(2):
+        result = cli("measure", "ring.h5", "--events", "-o", "events.csv")
+        assert (result.code, result.out, result.err) == (0, "events.csv: 1 event\n", "")
+    assert Path("events.csv").read_text() == "round,time,event,first,second\n10,0.5,first contact,ring,surface\n"
+
+
 @pytest.mark.usefixtures("ring")
 def test_a_file_of_others_stays(cli):
     Path("mine.csv").write_text("round,time,price\n1,2,3\n")
@@ -75,10 +95,12 @@ def test_a_file_of_others_stays(cli):
         ),
         (("ring.h5", "gap between ring"), "gap is measured as `gap between A and B`"),
         (("ring.h5", "--rounds", "30"), "ring.h5: there is no round 30; it ends at round 20"),
-        (("ring.h5", "-o", "ring.txt"), "ring.txt: a table of measures is written as .csv"),
+        (("ring.h5", "energy", "--events"), ALL_FRAMES),
+        (("ring.h5", "--events", "--rounds", "0"), ALL_FRAMES),
+        (("ring.h5", "-o", "ring.txt"), "ring.txt: a table is written as .csv"),
         (("ring.h5", "-o", "no/ring.csv"), "no/ring.csv: the folder no does not exist"),
         (("no.h5", "energy"), "no.h5: no such file"),
-        (("scenes/ring.yaml", "energy"), "scenes/ring.yaml: not a trajectory of atomsim"),
+        (("scenes/ring.yaml", "energy"), IS_A_SCENE),
     ],
 )
 def test_mistakes_end_in_one_line(cli, arguments, message):

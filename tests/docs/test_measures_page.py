@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from atomsim.measures.events import SENTENCES
 from atomsim.scene.language.measures import COMPONENTS, QUANTITIES
 
 PAGE = (Path(__file__).parents[2] / "docs" / "measures.md").read_text(encoding="utf-8")
@@ -33,3 +34,8 @@ def test_units_and_vectors_are_those_of_the_vocabulary() -> None:
             quantity = QUANTITIES.get(name, QUANTITIES["centroid"])
             assert unit == (quantity.unit or "none"), name
             assert ("a vector" in formula) == (quantity.is_vector and name not in COMPONENTS), name
+
+
+def test_every_event_is_defined() -> None:
+    table = PAGE.split("## Events")[1].split("\n- ")[0]
+    assert re.findall(r"^\| ([a-z ]+) \| (?!it happens)", table, re.MULTILINE) == list(SENTENCES)

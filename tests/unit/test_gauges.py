@@ -13,9 +13,10 @@ from atomsim.core.gauges import motion, shape
 from atomsim.core.gauges.block import Block, Gauge, blocks, ordered_sum
 from atomsim.core.gauges.meter import Meter
 from atomsim.core.gauges.near import Gap, Overlap
+from atomsim.core.gauges.passing import Passing
 from atomsim.core.gauges.recorded import Recorded
 from atomsim.core.gauges.rigid import Body, Deformation, Tilt, Turning
-from atomsim.core.gauges.winding import Winding
+from atomsim.core.gauges.strings import Crossings, Winding
 from atomsim.core.model import Frame, State
 from atomsim.core.simulate import simulate
 
@@ -141,7 +142,15 @@ GAUGES: list[tuple[Gauge, Slow]] = [
 
 BODY = Body.of(SOME, states(1)[0].position)
 LINE = Body.of(slice(0, 5), np.outer(np.arange(float(N_ATOMS)), [1.0, 2.0, -1.0]))
-OTHERS: list[Gauge] = [Turning(BODY), Tilt(BODY, 2), Deformation(BODY), Turning(LINE, (0,)), Winding(SOME, FEW)]
+OTHERS: list[Gauge] = [
+    Turning(BODY),
+    Tilt(BODY, 2),
+    Deformation(BODY),
+    Turning(LINE, (0,)),
+    Winding(SOME, FEW),
+    Crossings(SOME, FEW),
+    Passing(Gap(FEW, np.arange(31, 37)), 2.0),
+]
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3, 9])

@@ -9,6 +9,7 @@ from support.running import atoms_at, compiled
 from atomsim.core.gauges import near
 from atomsim.core.gauges.block import Block
 from atomsim.core.gauges.near import Contacts, Gap
+from atomsim.core.gauges.passing import Passing
 from atomsim.core.model import Floats, Indices
 
 NOTHING = np.empty(0)
@@ -109,3 +110,38 @@ def test_contacts_are_counted_as_a_run_counts_them(few: int, step: float, monkey
     assert contacts(tables[2:], 30, a).measure(block, NOTHING)[0].tolist() == of_a.tolist()
     for sides in ((a, b), (b, a)):
         assert contacts(tables, 30, *sides).measure(block, NOTHING)[0].tolist() == (2 * one).tolist()
+
+
+def moving(places: list[list[float]], speeds: list[list[float]]) -> Block:
+    """Return a block of one frame."""
+    position, velocity = (np.array(rows, dtype=float).T[:, :, None].copy() for rows in (places, speeds))
+    return Block(position, velocity, {})
+
+
+@pytest.mark.parametrize(
+    ("place", "speed", "span", "ahead"),
+    [
+        ([6, 0, 0], [-1, 0, 0], 5.0, -1.0),  # they would be 1 apart, if they went through each other
+        ([6, 0, 0], [-1, 0, 0], 10.0, -2.0),  # head on
+        ([6, 1, 0], [-1, 0, 0], 10.0, -1.0),  # past each other, 1 apart
+        ([6, 3, 0], [-1, 0, 0], 10.0, 1.0),
+        ([6, 0, 0], [-1, 0, 0], 1.0, 4.0),  # too slow: not even looked at
+        ([6, 0, 0], [1, 0, 0], 100.0, 4.0),  # away from each other
+        ([6, 0, 0], [0, 0, 0], 100.0, 4.0),
+        ([1, 0, 0], [-9, 0, 0], 1.0, -1.0),  # in contact already
+        ([12, 0, 0], [-1, 0, 0], 100.0, 10.0),  # too far away to be looked at
+    ],
+)
+def test_what_two_atoms_do_until_the_next_frame(
+    place: list[float], speed: list[float], span: float, ahead: float
+) -> None:
+    block = moving([[0, 0, 0], place], [[0, 0, 0], speed])
+    passing = Passing(Gap(np.array([0]), np.array([1])), span)
+    now = float(np.linalg.norm(place)) - 2.0
+    assert passing.measure(block, NOTHING)[:, 0] == pytest.approx([now, ahead])
+
+
+def test_an_atom_on_both_sides_does_not_meet_itself() -> None:
+    block = moving([[0, 0, 0], [6, 0, 0]], [[9, 0, 0], [9, 0, 0]])
+    passing = Passing(Gap(np.array([0, 1]), np.array([1])), 1.0)
+    assert passing.measure(block, NOTHING)[:, 0] == pytest.approx([4.0, 4.0])

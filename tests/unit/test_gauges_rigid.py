@@ -8,7 +8,7 @@ import pytest
 from atomsim.core.gauges.block import Block
 from atomsim.core.gauges.eigen import eigen
 from atomsim.core.gauges.rigid import Body, Deformation, Tilt, Turning, angle_between, rotate
-from atomsim.core.gauges.winding import Winding
+from atomsim.core.gauges.strings import Winding
 from atomsim.core.model import Floats
 
 RING = np.array([[4 * np.cos(a), 4 * np.sin(a), 0.0] for a in 2 * np.pi * np.arange(20) / 20])

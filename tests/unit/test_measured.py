@@ -11,8 +11,8 @@ import pytest
 from support.running import SCENES
 
 import atomsim
-from atomsim.tasks.measure import is_our_table, write_measures
 from atomsim.tasks.recompute import laid_out_inside
+from atomsim.tasks.tables import is_our_table, write_measures
 
 MEASURES = [
     "x of ring",
@@ -65,6 +65,10 @@ def test_some_rounds_are_the_nearest_frames_and_turns_are_counted_all_the_same(r
     assert some.table.tobytes() == everything.table[[0, 30, 60]].tobytes()
 
 
+def test_rounds_may_be_written_as_on_the_command_line(ring: Path) -> None:
+    assert atomsim.measure(ring, "energy", rounds="0-200:100,-2,0").round.tolist() == [0, 100, 200, 590, 595]
+
+
 def test_one_measure_may_be_a_text_and_a_file_may_be_open(ring: Path) -> None:
     with atomsim.Trajectory(ring) as trajectory:
         measured = atomsim.measure(trajectory, "speed of ring")
@@ -99,10 +103,12 @@ def test_observables_are_known_without_reading_a_frame(ring: Path, monkeypatch: 
         ("height of rong", None, "height of rong: there is no group `rong`; did you mean `ring`?"),
         ("max strain of bonds.rong", None, "max strain of bonds.rong: there is no `bonds.rong`; did you mean `ring`?"),
         ("tilt of ring[0]", None, "tilt of ring[0]: `ring[0]` is a single atom"),
-        ([], None, "name a measure, such as `energy`"),
-        ("energy", [], "name a round to measure, or leave `rounds` out for all frames"),
+        ([], None, "measures: needs measures, such as `height of ring`, at least one (got [])"),
+        (["energy", 3], None, "measures: needs measures, such as `height of ring`, at least one (got 3)"),
+        ("energy", [], "rounds: needs whole numbers, such as [0, 250]"),
+        ("energy", [0.5], "rounds: needs a whole number of 0 or more (got 0.5)"),
         ("energy", [596], "ring.h5: there is no round 596; it ends at round 595"),
-        ("energy", [-1], "ring.h5: there is no round -1"),
+        ("energy", [-1], "rounds: needs a whole number of 0 or more (got -1)"),
     ],
 )
 def test_mistakes_are_told(ring: Path, measures: str | list[str], rounds: list[int] | None, message: str) -> None:
@@ -115,7 +121,7 @@ def test_a_scene_of_other_groups_than_the_frames_is_refused(ring: Path) -> None:
     with atomsim.Trajectory(ring) as trajectory:
         header = trajectory.header
     assert laid_out_inside(header, ring).scene.groups
-    other = replace(header, scene=header.scene.replace("count: 20", "count: 21"))
+    other = replace(header, scene=header.scene.replace("ring", "hoop"))
     with pytest.raises(atomsim.InputError, match="the scene inside has other groups than the frames"):
         laid_out_inside(other, ring)
 

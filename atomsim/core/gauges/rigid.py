@@ -33,12 +33,14 @@ class Body:
         line: the direction along which all of them lay, (3,) float64, or None.
         axis: the axis of revolution, about which turning cannot be seen, (3,) float64, or None: that of a ring, a
             disc, a square sheet, a rod, a tower; not of a cart, a cube or a ball.
+        is_round: whether it reaches as far in all directions, in the mean square, as a ball does or a cube.
     """
 
     atoms: Atoms
     shape: Floats
     line: Floats | None
     axis: Floats | None
+    is_round: bool
 
     @classmethod
     def of(cls, atoms: Atoms, position: Floats) -> Body:
@@ -60,6 +62,7 @@ class Body:
             np.ascontiguousarray(shape),
             line=axes[:, 0, 0] if is_line else None,
             axis=axis if is_flat_round != is_long_round else None,
+            is_round=largest - least <= ALIKE * largest,
         )
 
     def now(self, block: Block) -> Floats:

@@ -43,6 +43,7 @@ QuantityName: TypeAlias = Literal[
     "relative velocity",
     "closing speed",
     "winding",
+    "crossings",
 ]
 
 COMPONENTS: tuple[Component, ...] = ("x", "y", "z")
@@ -104,6 +105,7 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("relative velocity", SPEED, is_vector=True, of=False, between=True),
         Quantity("closing speed", SPEED, of=False, between=True),
         Quantity("winding", DEGREES, of=False, between=True),
+        Quantity("crossings", COUNT, of=False, between=True),
     )
 }
 """Everything that can be measured, by name; docs/measures.md defines each."""
