@@ -15,6 +15,7 @@ RemedyKind: TypeAlias = Literal[
     "begin",
     "recover",
     "more rounds",
+    "lose additions",
     "new file",
     "show scene",
     "record golden",

@@ -57,6 +57,8 @@ def in_words(remedy: Remedy) -> str:
             return f"to make the file of what there is: {command('recover', path)}"
         case "more rounds":
             return "ask for more with --rounds"
+        case "lose additions":
+            return f"copy {path} if that is to be kept, then add --force to go on without it"
         case "new file":
             return f"to run {path}: choose another name with -o"
         case "show scene":

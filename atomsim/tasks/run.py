@@ -13,6 +13,7 @@ from atomsim import arguments
 from atomsim.compiler.colors import group_colors
 from atomsim.core.backend import Backend
 from atomsim.core.diagnosis.tunnelling import SpeedWatch
+from atomsim.core.digest import state_digest
 from atomsim.core.free_memory import readable_bytes
 from atomsim.disk import behind
 from atomsim.errors import BlowUpError, InputError, Remedy, RunError
@@ -20,6 +21,7 @@ from atomsim.findings.before.diagnose import examine
 from atomsim.scene import LoadedScene
 from atomsim.scene.difference import differences
 from atomsim.tasks.prepare import Prepared, prepare, prepare_inside
+from atomsim.tasks.recompute import scene_inside
 from atomsim.trajectory import End, Header, Recorder, StoppedRun, check_target, later_version, trajectory_bytes
 
 Report: TypeAlias = Callable[[int, int], object]
@@ -40,7 +42,7 @@ class Outcome:
         last_round: the round of the last frame.
         digest: the state digest of the last frame.
         end: whether it finished or was interrupted.
-        backend: what computed it, and why that.
+        backend: what computed it, and why that; None if there was nothing left to compute.
         warning: what may have gone wrong unseen, or None.
     """
 
@@ -50,7 +52,7 @@ class Outcome:
     last_round: int
     digest: str
     end: End
-    backend: Backend
+    backend: Backend | None
     warning: str | None
 
 
@@ -115,6 +117,7 @@ def resume(
     *,
     rounds: int | None = None,
     scene: LoadedScene | None = None,
+    replace: bool = False,
     backend: str = "auto",
     threads: int | None = None,
     report: Report | None = None,
@@ -122,20 +125,22 @@ def resume(
 ) -> Outcome:
     """Go on with a trajectory from its last frame; the scene is inside it.
 
-    The finished file is the one that an uninterrupted run would have written, byte for byte.
+    The finished file is the one that an uninterrupted run would have written, byte for byte, with the author's name
+    that it has. One that has all its rounds stays as it is.
 
     Args:
         path: the trajectory, finished or stopped.
         rounds: total rounds to do; as planned before by default.
         scene: the scene that it is thought to be a run of.
+        replace: whether what another program added to the finished file may go with it.
         backend: as for `run`; it may be another one than before.
         threads: how many threads to use.
         report: hears how far the run is.
         warn: hears, before the run goes on, what to know of the trajectory.
 
     Raises:
-        InputError: there is no such trajectory, it is damaged, it is one of another scene, or it has done these rounds
-            already.
+        InputError: there is no such trajectory, it is damaged, one of another scene, or holds what another program
+            added to it.
         RunError: it cannot be written, or another run writes it.
         BlowUpError: the numbers left the finite; the frames before are in the trajectory.
     """
@@ -144,8 +149,12 @@ def resume(
         rounds = arguments.whole("rounds", rounds)
     if scene is not None:
         arguments.instance("scene", scene, LoadedScene, arguments.LOADED_SCENE)
-    with StoppedRun(path, rounds) as stopped:
+    with StoppedRun(path, rounds, replace=replace) as stopped:
         header = stopped.header
+        if stopped.is_complete:
+            if scene is not None:
+                _require_same(scene_inside(header, path), scene, path)
+            return _nothing_to_do(stopped)
         prepared = prepare_inside(header, path, header.rounds)
         if warn is not None and header.is_later:
             warn(str(later_version(path, header)))
@@ -155,6 +164,15 @@ def resume(
         chosen = prepared.choose(backend, threads)
         with stopped.go_on() as recorder:
             return _record(recorder, prepared, chosen, report)
+
+
+def _nothing_to_do(stopped: StoppedRun) -> Outcome:
+    """Return what became of a run that was complete before."""
+    state = stopped.state
+    assert state is not None  # there is a finished file, and none without a frame
+    digest = state_digest(state.position, state.velocity, state.memory)
+    done = state.round_index
+    return Outcome(stopped.path, stopped.header.rounds, done, done, digest, End("finished"), None, None)
 
 
 def _require_same(inside: LoadedScene, scene: LoadedScene, path: Path) -> None:

@@ -36,6 +36,9 @@ What remembers nothing but positions and velocities is still written in the firs
 AtomNumbers: TypeAlias = NDArray[np.int32]
 """Numbers of atoms as H5MD and VMD want them: 32 bits."""
 
+Author: TypeAlias = str
+"""A text that H5MD has a place for, so it is none of the values by name."""
+
 EndKind: TypeAlias = Literal["finished", "interrupted", "blew up", "killed"]
 
 _COPIED = re.compile(r"(.*?)(?: × ([1-9][0-9]{0,9}))?", re.DOTALL)
@@ -86,6 +89,7 @@ class Header:
         memory: what the run remembers besides positions and velocities, as `controllers.gait.phase float64 3`.
         bond: the pairs that are bound, first < second, (n_bonds, 2) int32.
         bond_table: which declaration made each pair, (n_bonds,) int32.
+        author: whom the file names; no part of its digest, so that anybody may write a name into a finished file.
     """
 
     schema_version: int
@@ -111,6 +115,7 @@ class Header:
     memory: tuple[str, ...]
     bond: AtomNumbers
     bond_table: AtomNumbers
+    author: Author = "unknown"
 
     @classmethod
     def of(
@@ -264,13 +269,16 @@ def check_version(values: Mapping[str, Any]) -> None:
     _require(type(written) is int and written in (PLAIN, REMEMBERING), "schema_version")
 
 
-def header_from(values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNumbers) -> Header:
+def header_from(
+    values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNumbers, author: object = "unknown"
+) -> Header:
     """Return the header that a document describes.
 
     Args:
         values: by name, as `document` returns them.
         bond: (n_bonds, 2) int32.
         bond_table: (n_bonds,) int32.
+        author: whom the file names.
 
     Raises:
         DamageError: a value is missing, of another kind, or makes no sense.
@@ -281,7 +289,8 @@ def header_from(values: Mapping[str, Any], bond: AtomNumbers, bond_table: AtomNu
         value = values.get(name)
         _require(_is_kind(value, kind), name)
         found[name] = tuple(value) if isinstance(value, list) else value
-    header = Header(**found, bond=bond, bond_table=bond_table)
+    _require(isinstance(author, str), "author")
+    header = Header(**found, bond=bond, bond_table=bond_table, author=storable(str(author)))
     _check(header)
     return header
 

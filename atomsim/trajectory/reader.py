@@ -50,6 +50,8 @@ class _Source(Protocol):
 
     def state(self, index: int) -> State: ...
 
+    def additions(self) -> list[str]: ...
+
     def close(self) -> None: ...
 
 
@@ -211,6 +213,16 @@ class Trajectory(Sequence[Frame]):
             torn = f"{self.path}: the last {self.lost_bytes:,} bytes of its journal are torn and left out"
             notices.append(Notice(torn))
         return notices
+
+    def additions(self) -> list[str]:
+        """Return the paths of what another program has added to the file, or changed in it where no digest tells.
+
+        Raises:
+            InputError: the trajectory was closed.
+        """
+        with self._lock, reading(self._found):
+            self._require_open()
+            return self._source.additions()
 
     def verify(self) -> None:
         """Read every frame and check it against its digest.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from dataclasses import replace
+from dataclasses import replace as with_changes
 from pathlib import Path
 from types import TracebackType
 
@@ -20,6 +20,9 @@ from atomsim.trajectory.reader import Trajectory
 from atomsim.trajectory.recorder import Recorder
 from atomsim.trajectory.rows import fill, row_dtype
 
+_MOST_NAMED = 5
+"""So many additions are named in a message."""
+
 
 class StoppedRun:
     """A run that can go on from its last frame; until `go_on` no file is changed.
@@ -33,25 +36,29 @@ class StoppedRun:
     Args:
         path: the trajectory.
         rounds: total rounds to do; as planned before by default.
+        replace: whether what another program added to the finished file may go with it.
 
     Raises:
-        InputError: there is no such trajectory, it is damaged, blew up, or has done these rounds already.
+        InputError: there is no such trajectory, it is damaged, blew up, or holds what another program added to it.
         RunError: it cannot be written, or another process writes it.
 
     Attributes:
         path: the trajectory.
         header: what it says besides its frames, with the rounds now planned.
         state: that of its last frame; None if it has none yet.
+        is_complete: whether the finished file has these rounds already, so that there is nothing to go on to.
     """
 
-    def __init__(self, path: str | os.PathLike[str], rounds: int | None = None) -> None:
+    def __init__(self, path: str | os.PathLike[str], rounds: int | None = None, *, replace: bool = False) -> None:
         self.path = trajectory_path(path)
         source = _Unfinished(self.path) if has_journal(self.path) else _Finished(self.path)
         self._source: _Unfinished | _Finished | None = source
-        self.header = source.header if rounds is None else replace(source.header, rounds=rounds)
+        self.header = source.header if rounds is None else with_changes(source.header, rounds=rounds)
         self.state = source.state
         try:
-            source.check(self.header.rounds)
+            self.is_complete = source.is_complete(self.header.rounds)
+            if not (self.is_complete or replace):
+                source.require_no_additions()
         except BaseException:
             source.close()
             raise
@@ -64,7 +71,9 @@ class StoppedRun:
             self._source.close()
 
     def go_on(self) -> Recorder:
-        """Return what records the rest of the run; it is its own context manager. To be called once.
+        """Return what records the rest of the run; it is its own context manager.
+
+        To be called once, and not if the run is complete.
 
         Raises:
             InputError: a later version wrote the journal, and what it says cannot be judged.
@@ -97,11 +106,15 @@ class _Unfinished:
             self.close()
             raise
 
-    def check(self, rounds: int) -> None:
-        """Refuse to go on for too few rounds; none at all may be left to do but to build the file."""
+    def is_complete(self, rounds: int) -> bool:
+        """Return false: where no rounds are left to do, the file is still to be built; and refuse too few rounds."""
         if self.state is not None and self.state.round_index > rounds:
-            raise _done_already(self._path, self.state.round_index)
+            raise InputError(f"{self._path}: has done {self.state.round_index} rounds already", Remedy("more rounds"))
         require_own(self._path, self._journal)
+        return False
+
+    def require_no_additions(self) -> None:
+        """Do nothing: there is no file to which anything could have been added, or it is known to be replaceable."""
 
     def writer(self) -> JournalWriter:
         """Return what writes on after the last whole record."""
@@ -127,15 +140,24 @@ class _Finished:
             self.close()
             raise
 
-    def check(self, rounds: int) -> None:
-        """Refuse to go on where there is nothing left to do, or nothing else to expect."""
+    def is_complete(self, rounds: int) -> bool:
+        """Tell whether it has so many rounds, and refuse to go on where nothing else is to be expected."""
         last_round = self.state.round_index
         if self._frames.end.kind == "blew up":
             raise InputError(
                 f"{self._path}: blew up after round {last_round} and would again; change its scene and run that"
             )
-        if last_round >= rounds:
-            raise _done_already(self._path, last_round)
+        return last_round >= rounds
+
+    def require_no_additions(self) -> None:
+        """Refuse to go on where something would be lost that no run can compute again."""
+        added = self._frames.additions()
+        if added:
+            named = ", ".join(added[:_MOST_NAMED]) + (" and more" if len(added) > _MOST_NAMED else "")
+            raise InputError(
+                f"{self._path}: holds what another program put into it, and going on would lose it: {named}",
+                Remedy("lose additions", self._path),
+            )
 
     def writer(self) -> JournalWriter:
         """Write the file back into a journal, complete before it appears, and return what writes on in that."""
@@ -156,7 +178,3 @@ class _Finished:
         self._frames.close()
         if self._writer is not None:
             self._writer.close()
-
-
-def _done_already(path: Path, last_round: int) -> InputError:
-    return InputError(f"{path}: has done {last_round} rounds already", Remedy("more rounds"))

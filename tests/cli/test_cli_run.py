@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import h5py
 import pytest
 
 
@@ -132,7 +133,7 @@ def test_a_setting_that_is_to_blame_has_no_line(cli):
         (("run", "scenes/rod.yaml"), "scenes/rod.yaml: there is no such file; did you mean `scenes/rods.yaml`?"),
         (("run", "scenes/rods.yaml", "-o", "no/out.h5"), "no/out.h5: there is no folder no"),
         (("run", "scenes/rods.yaml", "--resume", "a.h5"), "a.h5: no such file"),
-        (("run", "--resume", "a.h5", "--force"), "--resume goes on with the file that it names; -o, --force and"),
+        (("run", "--resume", "a.h5", "--compress"), "--resume goes on with the file that it names; -o and"),
         (("run", "--resume", "a.h5"), "a.h5: no such file"),
         (
             ("run", "--resume", "a.h5", "--set", "rounds=9"),
@@ -145,12 +146,12 @@ def test_a_setting_that_is_to_blame_has_no_line(cli):
         (("compare", ".", "a.h5"), ".: this is a folder, not a trajectory"),
         (("recover", "."), ".: this is a folder, not a trajectory"),
         (("render", "a.h5"), "a.h5: no such file"),
-        (("render", "scenes/rods.yaml"), "scenes/rods.yaml: not a trajectory of atomsim"),
+        (("render", "scenes/rods.yaml"), "scenes/rods.yaml: is a scene, not a trajectory of atomsim"),
         (("render", "a.h5", "--rounds", "1,x"), "rounds are written 0,250,500 or 0-2000:100 (from, to, every) or -20"),
         (("render", "a.h5", "--rounds", "-0"), "rounds are written 0,250,500 or 0-2000:100 (from, to, every) or -20"),
         (("render", "a.h5", "--camera", "30"), "--camera needs two numbers, as in 30,20 (got 30)"),
         (("render", "a.h5", "--size", "640"), "--size needs two numbers, as in 640x480 (got 640)"),
-        (("show", "scenes/rods.yaml"), "scenes/rods.yaml: not a trajectory of atomsim"),
+        (("show", "scenes/rods.yaml"), "scenes/rods.yaml: is a scene, not a trajectory of atomsim"),
         (("compare", "a.h5", "b.h5"), "a.h5: no such file"),
         (("verify", "a.h5"), "a.h5: no such file"),
         (("recover", "a.h5"), "a.h5: there is no journal a.h5.part to recover it from"),
@@ -280,3 +281,35 @@ def test_check_gives_findings_as_data_whatever_else_is_wrong(cli):
 
 def test_version(cli):
     assert re.fullmatch(r"atomsim \d+\.\d+\.\d+\n", cli("--version").out)
+
+
+def test_a_complete_run_has_nothing_left_to_do(cli):
+    """A queue that starts every job again with --resume must not fail."""
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20", "-q").code == 0
+    before = Path("out.h5").read_bytes()
+    for options in ((), ("--rounds", "20"), ("--rounds", "10"), ("--force",)):
+        result = cli("run", "--resume", "out.h5", *options)
+        assert (result.code, result.err) == (0, "")
+        assert result.out == "out.h5: complete, it has done 20 rounds already; ask for more with --rounds\n"
+        quiet = cli("run", "--resume", "out.h5", "-q", *options)
+        assert (quiet.code, quiet.out, quiet.err) == (0, "", "")
+    result = cli("run", "scenes/balls.yaml", "--resume", "out.h5")
+    assert (result.code, result.out) == (2, "")
+    assert result.err.startswith("out.h5 is a run of another scene than scenes/balls.yaml is now:")
+    assert Path("out.h5").read_bytes() == before
+
+
+def test_what_was_added_to_a_trajectory_is_not_lost_without_a_word(cli):
+    assert cli("run", "scenes/rods.yaml", "--rounds", "20", "-q").code == 0
+    with h5py.File("out.h5", "r+") as file:
+        file["analysis/tension"] = [1.0, 2.0, 3.0]
+    before = Path("out.h5").read_bytes()
+    result = cli("run", "--resume", "out.h5", "--rounds", "40")
+    assert (result.code, result.out) == (2, "")
+    assert result.err == (
+        "out.h5: holds what another program put into it, and going on would lose it: /analysis; copy out.h5 if that is "
+        "to be kept, then add --force to go on without it\n"
+    )
+    assert Path("out.h5").read_bytes() == before
+    assert cli("run", "--resume", "out.h5", "--rounds", "40", "-q", "--force").code == 0
+    assert cli("show", "out.h5").code == 0

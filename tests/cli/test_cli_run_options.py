@@ -22,15 +22,13 @@ forces: {wind: {kind: gravity, acts_on: right, impulse: [10, 0, 0]}}
 """
 
 
-@pytest.mark.parametrize("options", [("-o", "other.h5"), ("--force",), ("--compress",)])
+@pytest.mark.parametrize("options", [("-o", "other.h5"), ("--compress",)])
 def test_options_of_a_new_file_do_not_go_with_resume(cli, options):
     assert cli(*SHORT, "-q").code == 0
     before = Path("out.h5").read_bytes()
     result = cli("run", "--resume", "out.h5", "--rounds", "40", *options)
     assert (result.code, result.out) == (2, "")
-    assert result.err == (
-        "--resume goes on with the file that it names; -o, --force and --compress do not go with it\n"
-    )
+    assert result.err == ("--resume goes on with the file that it names; -o and --compress do not go with it\n")
     assert Path("out.h5").read_bytes() == before
     assert not Path("other.h5").exists()
 

@@ -57,15 +57,18 @@ def run(
         Path | None,
         typer.Option(metavar="OUT", help="Go on with this trajectory; it holds its scene."),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace the trajectory if it exists.")] = False,
+    force: Annotated[
+        bool,
+        typer.Option("--force", help="Replace the trajectory if it exists; with --resume, lose what was added to it."),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     from atomsim.cli.terminal.progress import Progress
     from atomsim.cli.terminal.signals import wishes_to_stop
     from atomsim.tasks import run as record
 
-    if resume is not None and (output is not None or force or compress):
-        raise InputError("--resume goes on with the file that it names; -o, --force and --compress do not go with it")
+    if resume is not None and (output is not None or compress):
+        raise InputError("--resume goes on with the file that it names; -o and --compress do not go with it")
     if scene is None and resume is not None and settings:
         raise InputError("--resume goes on with the scene inside the trajectory, which --set cannot change")
     if scene is None and resume is None:
@@ -84,6 +87,7 @@ def run(
                 target,
                 rounds=rounds,
                 scene=loaded,
+                replace=force,
                 backend=backend,
                 threads=threads,
                 report=report,
@@ -120,6 +124,10 @@ def _to_go_on(path: Path) -> str:
 
 def _summarise(outcome: Outcome, seconds: float) -> None:
     """Print what was done and what to type next."""
+    if outcome.backend is None:
+        more = in_words(Remedy("more rounds"))
+        say(f"{outcome.path}: complete, it has done {outcome.last_round:,} rounds already; {more}")
+        return
     from atomsim.cli.terminal.progress import rate
     from atomsim.core.free_memory import readable_bytes
 

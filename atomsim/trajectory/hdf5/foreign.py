@@ -32,14 +32,14 @@ def require_ours(file: Any) -> None:
     """
     if "parameters" in file and isinstance(file.get("parameters"), h5py.Group) and "atomsim" in file["parameters"]:
         return
-    creator = _text(file, "h5md/creator", "name")
+    creator = short_text(file, "h5md/creator", "name")
     if creator == "atomsim":
         return  # it is one, and damaged
     if creator is not None:
-        version = _text(file, "h5md/creator", "version") or ""
-        by = " ".join(f"{creator} {version}".split())
+        version = short_text(file, "h5md/creator", "version") or ""
+        by = " ".join(f"{creator[:_LONGEST_NAME]} {version[:_LONGEST_NAME]}".split())
         raise _other(f"an H5MD file written by {by}", "MDAnalysis, VMD or h5py")
-    if _text(file, "", "program") == "MDTraj":
+    if short_text(file, "", "program") == "MDTraj":
         raise _other("an HDF5 trajectory of MDTraj", "MDTraj")
     for mark, kind, readers in _MARKS:
         if mark in file.attrs:
@@ -51,8 +51,8 @@ def _other(kind: str, readers: str) -> DamageError:
     return DamageError(f"is {kind}, not a trajectory of atomsim; read it with {readers}")
 
 
-def _text(file: Any, path: str, name: str) -> str | None:
-    """Return a short text that is an attribute; None if there is none."""
+def short_text(file: Any, path: str, name: str) -> str | None:
+    """Return a text that is an attribute of a group, or its beginning; None if there is none."""
     here = file
     for part in path.split("/") if path else ():
         if not isinstance(here.get(part, getlink=True), h5py.HardLink) or not isinstance(here[part], h5py.Group):
@@ -65,4 +65,4 @@ def _text(file: Any, path: str, name: str) -> str | None:
         value = value.reshape(())[()]
     if isinstance(value, bytes):
         value = value.decode("utf-8", "replace")
-    return str(value)[:_LONGEST_NAME] if isinstance(value, str) else None
+    return str(value)[:_MOST_BYTES] if isinstance(value, str) else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from atomsim.core.memory import Memory
 from atomsim.core.model import State
 from atomsim.trajectory.guard import DamageError, check_room, odd
 from atomsim.trajectory.hdf5 import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
-from atomsim.trajectory.hdf5.foreign import require_ours
+from atomsim.trajectory.hdf5.foreign import require_ours, short_text
 from atomsim.trajectory.hdf5.hardening import PlainFile
 from atomsim.trajectory.header import Header, Kind, check_version, contents_digest, end_from, fields, header_from
 from atomsim.trajectory.rows import OBSERVABLES, SERIES, Series, check_rounds, state_of
@@ -37,7 +38,8 @@ class Finished:
         self._file = _opened(path)
         try:
             require_ours(self._file)
-            self._read(PlainFile(self._file, path.stat().st_size))
+            self._plain = PlainFile(self._file, path.stat().st_size)
+            self._read(self._plain)
         except BaseException:
             self.close()
             raise
@@ -51,8 +53,15 @@ class Finished:
         memory = Memory({name: values[index] for name, values in self._memory.items()})
         return state_of(self.series[index], self._position.row(index), self._velocity.row(index), memory)
 
+    def additions(self) -> list[str]:
+        """Return the paths of what another program has added to the file, or changed where no digest tells."""
+        # Deferred because only going on with a run has to know.
+        from atomsim.trajectory.hdf5.additions import additions
+
+        return additions(self._file, self._plain, self)
+
     def _read(self, file: PlainFile) -> None:
-        self.header = _header(file)
+        self.header = replace(_header(file), author=short_text(self._file, "h5md/author", "name") or "unknown")
         self.end = end_from({name: file.text(f"{PARAMETERS}/{name}") for name in ("end", "end_report")})
         self.series = _series(file, self.header.time_step)
         if file.text(f"{PARAMETERS}/contents_sha256") != contents_digest(self.header, self.end, self.series):

@@ -69,6 +69,10 @@ class Journal:
         """Close the file."""
         self._file.close()
 
+    def additions(self) -> list[str]:
+        """Return nothing: what another program writes into a journal is damage."""
+        return []
+
     def rows(self, start: int, stop: int) -> Rows:
         """Return the frames start ≤ index < stop as rows."""
         rows = np.empty(stop - start, self._dtype)
@@ -90,7 +94,7 @@ class Journal:
             raise DamageError("damaged: its header is not a mapping")
         check_version(values)
         bonds = np.frombuffer(self._payload_of(BONDS, next(records, None)), "<i4").reshape(-1, 3)
-        self.header: Header = header_from(values, bonds[:, :2], bonds[:, 2])
+        self.header: Header = header_from(values, bonds[:, :2], bonds[:, 2], values.get("author", "unknown"))
         self._dtype = row_dtype(self.header.n_atoms, self.header.layout)
         check_room(self._dtype.itemsize)
 

@@ -215,7 +215,7 @@ class JournalWriter:
 
     def _begin(self) -> None:
         assert self._header is not None
-        self._append_json(HEAD, document(self._header))
+        self._append_json(HEAD, {**document(self._header), "author": self._header.author})
         self._append(BONDS, np.column_stack((self._header.bond, self._header.bond_table)).astype("<i4"))
         for stamp in self._replaceable:
             self._append_json(REPLACES, asdict(stamp))
