@@ -9,6 +9,7 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
+from atomsim.core.backend_table import NAMES
 from atomsim.errors import InputError
 
 
@@ -73,14 +74,12 @@ def output(metavar: str, help: str) -> Any:
     )
 
 
-BACKENDS = ("auto", "numpy", "numba")
-
 Backend: TypeAlias = Annotated[
     str,
     typer.Option(
-        metavar="|".join(BACKENDS),
+        metavar="|".join(NAMES),
         help="What computes; the trajectory is the same to the last bit.",
-        autocompletion=lambda: BACKENDS,
+        autocompletion=lambda: NAMES,
     ),
 ]
 

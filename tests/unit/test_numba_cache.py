@@ -11,9 +11,10 @@ import atomsim
 from atomsim.core.numba_backend import cache
 
 START = """
-from atomsim.core.numba_backend.proof import prove
+from atomsim.core.numba_backend.stepper import NumbaStepper
+from atomsim.core.proof import prove
 from atomsim.core.numba_backend.round_kernels import advance_rounds
-prove()
+prove(NumbaStepper)
 print(*map(len, (advance_rounds.stats.cache_hits, advance_rounds.stats.cache_misses)))
 """
 

@@ -7,7 +7,7 @@ import pytest
 from support.everything import EVERYTHING
 from support.running import after, compiled, digest_of, is_finite
 
-from atomsim.core.model import Model, State
+from atomsim.core.model import State
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.simulate import simulate
 from atomsim.errors import BlowUpError
@@ -16,31 +16,9 @@ pytest.importorskip("numba", reason="the backend is an extra")
 
 from atomsim.core.numba_backend import stepper
 from atomsim.core.numba_backend.near_kernels import find_near, sort_into_buckets
-from atomsim.core.numba_backend.proof import prove
 from atomsim.core.numba_backend.round_kernels import advance_rounds
 from atomsim.core.numba_backend.stepper import NumbaStepper
 from atomsim.core.plans import force_plan
-
-
-class IdleStepper:
-    """A stepper that computes nothing."""
-
-    def __init__(self, _: Model, state: State) -> None:
-        self._state = state
-
-    def advance(self, n_rounds: int) -> None:
-        """Stay."""
-
-    def state(self) -> State:
-        """Return the first state."""
-        return self._state
-
-
-def test_the_proof_can_fail(monkeypatch: pytest.MonkeyPatch) -> None:
-    prove()
-    monkeypatch.setattr("atomsim.core.numba_backend.proof.NumpyStepper", IdleStepper)
-    with pytest.raises(ArithmeticError, match="not that of NumPy"):
-        prove()
 
 
 def test_how_rounds_are_cut_into_calls_never_shows(monkeypatch: pytest.MonkeyPatch) -> None:

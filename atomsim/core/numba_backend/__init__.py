@@ -4,5 +4,5 @@ Here every force is written from the receiving atom's side: an atom's subtotal i
 order, so atoms can be shared out to threads and nothing has to be scattered. A pair is computed twice, once from either
 side; since c_i − c_k is exactly −(c_k − c_i), both sides agree.
 
-Only `atomsim.core.backend` imports this package, and only when Numba is going to be used.
+It is imported by its row of `atomsim.core.backend_table`, and only when it is going to be used.
 """

@@ -6,7 +6,8 @@ import pytest
 from support.running import compiled
 
 from atomsim.core import backend as backends
-from atomsim.core.backend import choose
+from atomsim.core.backend import MakeStepper, choose
+from atomsim.core.backend_table import BackendKind
 from atomsim.core.numba_backend import cache
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.errors import InputError, Remedy
@@ -18,17 +19,24 @@ LONG = 10**9
 
 def missing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pretend that Numba is not installed."""
-    monkeypatch.setattr(backends, "_is_installed", lambda: False)
+    monkeypatch.setattr(backends, "_is_installed", lambda kind: kind.package is None)
+
+
+def installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pretend that Numba is installed."""
+    monkeypatch.setattr(backends, "_is_installed", lambda _: True)
 
 
 def broken(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pretend that Numba is installed for another NumPy."""
 
-    def fail(*_: object) -> None:
-        raise ImportError("Numba needs NumPy 1.9 or less\nmore about it")
+    def maker(kind: BackendKind) -> type[NumpyStepper]:
+        if kind.package is not None:
+            raise ImportError("Numba needs NumPy 1.9 or less\nmore about it")
+        return NumpyStepper
 
-    monkeypatch.setattr(backends, "_is_installed", lambda: True)
-    monkeypatch.setattr(backends, "_numba", fail)
+    installed(monkeypatch)
+    monkeypatch.setattr(backends, "_maker", maker)
 
 
 def test_a_short_run_is_not_worth_a_start() -> None:
@@ -47,7 +55,7 @@ def test_a_long_run_is() -> None:
 
 
 def test_kernels_are_compiled_only_for_a_very_long_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(backends, "_is_installed", lambda: True)
+    installed(monkeypatch)
     monkeypatch.setattr(cache, "has_kernels", lambda: False)
     backend = choose("auto", None, MODEL, 100_000)
     assert str(backend) == "numpy, 1 thread (the run is too short to compile Numba kernels for)"
@@ -55,9 +63,9 @@ def test_kernels_are_compiled_only_for_a_very_long_run(monkeypatch: pytest.Monke
 
 def test_a_crowd_is_slower_than_its_atoms_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the cache does not hold them, half the rounds repay compiling that would otherwise."""
-    monkeypatch.setattr(backends, "_is_installed", lambda: True)
+    installed(monkeypatch)
     monkeypatch.setattr(cache, "has_kernels", lambda: False)
-    monkeypatch.setattr(backends, "_numba", lambda *_: backends.Backend("numba", 1, "", NumpyStepper))
+    monkeypatch.setattr(backends, "_maker", lambda _: NumpyStepper)
     for n_atoms, rounds, name in ((19_000, 5000, "numpy"), (21_000, 5000, "numba"), (21_000, 1000, "numpy")):
         fluid = {"shape": "string", "count": n_atoms, "step": [3, 0, 0]}
         model, _ = compiled({"fluid": fluid}, collisions={"c": {"within": "fluid"}})
@@ -102,15 +110,13 @@ def test_a_broken_numba(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_damaged_kernels_are_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba", reason="the backend is an extra")
-    from atomsim.core.numba_backend import proof
-
     cleared = []
 
-    def prove() -> None:
+    def prove(_: MakeStepper) -> None:
         if not cleared:
             raise EOFError
 
-    monkeypatch.setattr(proof, "prove", prove)
+    monkeypatch.setattr("atomsim.core.proof.prove", prove)
     monkeypatch.setattr(cache, "clear", lambda: cleared.append(True))
     assert choose("numba", None, MODEL, 1).name == "numba"
     assert cleared
