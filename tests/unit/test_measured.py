@@ -121,7 +121,7 @@ def test_a_scene_of_other_groups_than_the_frames_is_refused(ring: Path) -> None:
     with atomsim.Trajectory(ring) as trajectory:
         header = trajectory.header
     assert laid_out_inside(header, ring).scene.groups
-    other = replace(header, groups=(replace(header.groups[0], name="hoop"), header.groups[1]))
+    other = replace(header, group_names=("hoop", "surface"))
     with pytest.raises(atomsim.InputError, match="the scene inside has other groups than the frames"):
         laid_out_inside(other, ring)
 
