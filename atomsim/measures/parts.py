@@ -1,4 +1,4 @@
-"""The groups of a scene as parts to which something happens, and which of them may touch."""
+"""The groups of a scene, copy by copy, as parts to which something happens, and which of them may touch."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from atomsim.trajectory.header import AtomNumbers
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """A group.
+    """A group, or one of its copies.
 
     Attributes:
-        name: what it is called.
+        name: what it is called, as a selection.
         atoms: its atoms, ascending.
         bodies: the bodies that its atoms belong to, ascending; see `atomsim.core.diagnosis.bodies`.
         is_held: whether all its atoms are held.
@@ -77,18 +77,16 @@ def parts_of(scene: Scene, bond: AtomNumbers) -> list[Part]:
     body = bodies([(first, second)], n_atoms)
     is_tied = np.zeros(n_atoms, dtype=bool)  # to the next atom
     is_tied[first[second == first + 1]] = True
-    return [
-        Part(
-            name,
-            np.arange(layout.start, layout.stop),
-            np.unique(body[layout.start : layout.stop]),
-            is_held=bool(is_held[layout.start : layout.stop].all()),
-            is_string=isinstance(scene.groups[name], (StringGroup, RingGroup, PolygonGroup))
-            and layout.stop - layout.start > 1
-            and bool(is_tied[layout.start : layout.stop - 1].all()),
-        )
-        for name, layout in layouts.items()
-    ]
+    is_threaded = {
+        name: isinstance(group, (StringGroup, RingGroup, PolygonGroup)) for name, group in scene.groups.items()
+    }
+    parts = []
+    for name in scene.groups:
+        for copy in selections.each_copy(name):
+            atoms = selections.atoms((copy,))
+            is_string = is_threaded[name] and atoms.size > 1 and bool(is_tied[atoms[:-1]].all())
+            parts.append(Part(copy, atoms, np.unique(body[atoms]), bool(is_held[atoms].all()), is_string))
+    return parts
 
 
 def pairs_of(scene: Scene, parts: list[Part]) -> list[Pair]:

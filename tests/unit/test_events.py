@@ -198,6 +198,20 @@ def test_parts_of_one_body_and_held_parts_do_not_meet() -> None:
     assert [atoms.tolist() for atoms in pairs[1].atoms] == [[4], [0]]
 
 
+def test_each_copy_of_a_group_is_a_part(happens: Happens) -> None:
+    found = happens(
+        {
+            "ball": atoms_at((-4, 0, 3), copies={"count": 2, "step": [8, 0, 0]}),
+            "floor": {**FLOOR, "centre": [-4, 0, 0]},
+        },
+        200,
+        collisions={"land": LAND},
+        forces={"weight": WEIGHT, "ground": HELD},
+    )
+    assert set(without_rounds(found)) >= {"ball.0 touches floor"}
+    assert not any("ball.1" in text for text in found)
+
+
 def test_only_the_atoms_that_may_touch_do(happens: Happens) -> None:
     """The border of the floor is left out of the collisions, and a ball falls past it."""
     found = happens(

@@ -16,7 +16,8 @@ from atomsim.scene.language.measures import (
 )
 from atomsim.scene.language.selection import SelectionSyntaxError
 
-SELECTIONS = st.lists(st.sampled_from(["ring", "all", "ring[-1]", "floor[0, :]", "a-b[2:8:3]"]), min_size=1, max_size=3)
+EXPRESSIONS = ["ring", "all", "ring[-1]", "floor[0, :]", "a-b[2:8:3]", "finger.2", "bonds.1[0]", "环"]
+SELECTIONS = st.lists(st.sampled_from(EXPRESSIONS), min_size=1, max_size=3)
 
 
 @st.composite
@@ -54,6 +55,9 @@ def test_what_is_written_is_read_as_the_same(measure: Measure) -> None:
         ("speed of [left,right[ 3 ]]", "speed of [left, right[3]]"),
         ("speed of [left]", "speed of left"),
         ("contacts of collisions.bounce", "contacts of collisions.bounce"),
+        ("max strain of bonds.re\u0301ng", "max strain of bonds.réng"),
+        ("height of re\u0301ng.2[ 0 ]", "height of réng.2[0]"),
+        ("max strain of bonds.2", "max strain of bonds.2"),
     ],
 )
 def test_spellings(text: str, usual: str) -> None:

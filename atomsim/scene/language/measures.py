@@ -274,7 +274,7 @@ def _measure(quantity: Quantity, component: Component | None, link: str | None, 
         return Measure(quantity.name, component, (_selection(rest),))
     if rule[1] != quantity.rules:
         raise MeasureSyntaxError(f"{quantity.name} is not measured of {rule[1]}; write {_form(quantity)}")
-    return Measure(quantity.name, component, rule=rest)
+    return Measure(quantity.name, component, rule=rule[0])
 
 
 def _selection(text: str) -> tuple[str, ...]:
@@ -283,7 +283,7 @@ def _selection(text: str) -> tuple[str, ...]:
     expressions = [text] if listed is None else _BETWEEN_ITEMS.split(listed[1])
     for expression in expressions:
         parse_selection(expression)
-    return tuple("".join(expression.split()).replace(",", ", ") for expression in expressions)
+    return tuple("".join(normalised(expression).split()).replace(",", ", ") for expression in expressions)
 
 
 def _written(selection: tuple[str, ...]) -> str:
