@@ -1,4 +1,4 @@
-"""Where two sequences of frames first differ, and by how much; knows neither files nor how frames come about."""
+"""The place where two sequences of frames first differ, and by how much."""
 
 from __future__ import annotations
 

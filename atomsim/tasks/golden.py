@@ -1,4 +1,4 @@
-"""Golden trajectories: what a scene gave when it was last approved, to the last bit; knows no scenes and no HDF5.
+"""Golden trajectories: what a scene gave when it was last approved, to the last bit.
 
 A golden is a small text file: the state digest of every recorded round, so that the first differing round is known,
 and a few full frames, so that the differing atom is. Full frames grow sparser with the rounds, because a difference

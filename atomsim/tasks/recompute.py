@@ -1,4 +1,4 @@
-"""The scene inside a trajectory, read and compiled again with a stranger's file in mind; knows no terminal.
+"""The scene inside a trajectory, read and compiled again with a stranger's file in mind.
 
 A damaged or hostile file may hold any text for a scene, or a scene of other atoms than its frames.
 """

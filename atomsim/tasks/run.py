@@ -1,4 +1,4 @@
-"""From a scene, or from where a trajectory stopped, to a recorded trajectory; knows no terminal."""
+"""The way from a scene, or from where a trajectory stopped, to a recorded trajectory."""
 
 from __future__ import annotations
 

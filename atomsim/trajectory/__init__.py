@@ -1,4 +1,4 @@
-"""Trajectories: recording a run and reading it back; knows no scene, and nothing of how a run comes about."""
+"""Trajectories of runs: recorded, read back, gone on with."""
 
 from atomsim.trajectory.header import End, Header
 from atomsim.trajectory.journal.form import journal_path

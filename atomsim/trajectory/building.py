@@ -1,4 +1,4 @@
-"""From a journal to the finished file under its name, in whose place nothing of another program's may stand."""
+"""The way from a journal to the finished file under its name, in whose place nothing of another program may stand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every reader of a stranger's file keeps to; knows no file format and imports nothing heavy.
+"""Rules that every reader of a stranger's file keeps to.
 
 A file that was damaged, or made to do damage, ends in one line that says what is wrong with it: never in a traceback,
 never in a request for more memory than there is.

@@ -1,4 +1,4 @@
-"""Moments at which Ctrl-C has to wait; knows nothing of what goes on in them."""
+"""Moments at which Ctrl-C has to wait."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @contextmanager
-def held() -> Iterator[Callable[[], None]]:
+def postponed() -> Iterator[Callable[[], None]]:
     """Hold Ctrl-C and termination back until the end, or until the function given is called to let them through.
 
     An exception from a signal handler may come between any two steps of Python, also those that HDF5 calls, which it

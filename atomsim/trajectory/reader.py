@@ -1,4 +1,4 @@
-"""A trajectory as an ordinary Python sequence of frames, finished or not; knows nothing of how one is written."""
+"""A trajectory as an ordinary Python sequence of frames, whether its run is finished or not."""
 
 from __future__ import annotations
 
@@ -8,31 +8,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol, overload
+from typing import Any, overload
 
 import numpy as np
 
 from atomsim import arguments
-from atomsim.core.model import Floats, Frame, Indices, State
+from atomsim.core.model import Floats, Frame, Indices
 from atomsim.errors import InputError, Notice, Remedy
-from atomsim.trajectory.foreign import HDF5_SIGNATURE, N_BYTES, require_hdf5
-from atomsim.trajectory.guard import DamageError, first_bytes, reading
-from atomsim.trajectory.header import End, Header
-from atomsim.trajectory.journal.form import HEAD, journal_path
+from atomsim.trajectory.door import Source, open_source
+from atomsim.trajectory.guard import DamageError, reading
+from atomsim.trajectory.header import Header
+from atomsim.trajectory.journal.form import journal_path
 from atomsim.trajectory.journal.read import Journal
-from atomsim.trajectory.rows import OBSERVABLES, Series, frame_of
+from atomsim.trajectory.rows import OBSERVABLES, recorded_frame
 from atomsim.version import __version__
-
-
-def is_ours(path: Path) -> bool:
-    """Tell whether a regular file is a trajectory or a journal of ours, though it may be damaged."""
-    start = first_bytes(path, N_BYTES)
-    if not start.startswith(HDF5_SIGNATURE):
-        return start.startswith(HEAD)
-    from atomsim.trajectory.hdf5.read import is_ours
-
-    # What cannot be opened is judged by the name that stands near the beginning of each file of ours.
-    return b"atomsim" in start if (answer := is_ours(path)) is None else answer
 
 
 def later_version(path: Path, header: Header) -> Notice:
@@ -41,18 +30,6 @@ def later_version(path: Path, header: Header) -> Notice:
         f"{path}: written by atomsim {header.program_version}, this is {__version__}: what the two compute may differ, "
         "and what is new in the file is not read"
     )
-
-
-class _Source(Protocol):
-    header: Header
-    series: Series
-    end: End
-
-    def state(self, index: int) -> State: ...
-
-    def additions(self) -> list[str]: ...
-
-    def close(self) -> None: ...
 
 
 class Frames(Sequence[Frame]):
@@ -109,27 +86,11 @@ class Trajectory(Sequence[Frame]):
             self._found = journal if self.has_journal and not self.path.exists() else self.path
             if not self._found.exists():
                 raise InputError(f"{self.path}: no such file")
-        with reading(self._found):
-            self._source: _Source = self._opened(self._found)
+        self._source: Source = open_source(self._found, self.path)
         self.header = self._source.header
         self.end = self._source.end
-
-    def _opened(self, found: Path) -> _Source:
-        start = first_bytes(found, N_BYTES)
-        self.from_journal = start.startswith(HEAD)
-        self.lost_bytes = 0
-        if self.from_journal:
-            journal = Journal(os.open(found, os.O_RDONLY | os.O_CLOEXEC))
-            if len(journal.series) == 0:
-                journal.close()
-                raise InputError(f"{found}: holds no frame yet", Remedy("begin", self.path))
-            self.lost_bytes = journal.lost
-            return journal
-        require_hdf5(found, start)
-        # Deferred because HDF5 takes longer to import than a small scene to run.
-        from atomsim.trajectory.hdf5.read import Finished
-
-        return Finished(found)
+        self.from_journal = isinstance(self._source, Journal)
+        self.lost_bytes = self._source.lost if isinstance(self._source, Journal) else 0
 
     def __enter__(self) -> Trajectory:
         self._require_open()
@@ -240,7 +201,7 @@ class Trajectory(Sequence[Frame]):
             is_finite = np.isfinite(state.position).all() and np.isfinite(state.velocity).all()
             if not is_finite and self.end.kind != "blew up":
                 raise DamageError(f"damaged: the state at round {state.round_index} is not finite")
-            return frame_of(self._source.series[index], state, self.header.time_step)
+            return recorded_frame(self._source.series[index], state, self.header.time_step)
 
 
 def _open_again(path: str, n_frames: int, last_digest: str) -> Trajectory:

@@ -1,4 +1,4 @@
-"""What a run hands its frames to; knows how a trajectory comes about, and nothing of what is simulated."""
+"""The recorder that a run hands its frames to, and the recovery of a run that was killed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from atomsim.core.model import Frame, State
 from atomsim.disk import Stamp, behind, is_protected
 from atomsim.errors import InputError, Remedy, RunError
 from atomsim.trajectory.building import build
+from atomsim.trajectory.door import is_ours
 from atomsim.trajectory.guard import reading
 from atomsim.trajectory.header import End, Header
-from atomsim.trajectory.interrupts import held
+from atomsim.trajectory.interrupts import postponed
 from atomsim.trajectory.journal.form import has_journal, journal_path, trajectory_path
 from atomsim.trajectory.journal.write import JournalWriter, TamperedError
-from atomsim.trajectory.reader import is_ours
 from atomsim.trajectory.rows import fill, row_dtype
 
 BLOCK_SECONDS = 1.0
@@ -74,7 +74,7 @@ class Recorder:
         path = Path(path)
         replaces = Stamp.of(path) if replace else None
         check_target(path, replace=replace)
-        with held():
+        with postponed():
             writer = JournalWriter.begin(journal_path(path), header, replaces)
             try:
                 writer.publish(replace=replace)
@@ -130,7 +130,7 @@ class Recorder:
     def _flush(self) -> None:
         if self._n_waiting:
             # Between the two lines, an interrupt would make the frames be written twice.
-            with held():
+            with postponed():
                 try:
                     self._writer.frames(self._block[: self._n_waiting])
                 except TamperedError:

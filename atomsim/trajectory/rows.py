@@ -1,4 +1,4 @@
-"""A frame as one row of a fixed number of bytes, little-endian; knows no file."""
+"""A frame as one row of a fixed number of bytes, little-endian, and back."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def state_of(series: Any, position: Floats, velocity: Floats, memory: Memory = E
     return state
 
 
-def frame_of(series: Any, state: State, time_step: float) -> Frame:
+def recorded_frame(series: Any, state: State, time_step: float) -> Frame:
     """Return the frame of a state.
 
     Args:

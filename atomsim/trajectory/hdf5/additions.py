@@ -1,4 +1,4 @@
-"""What another program has added to a finished file, or changed in it where no digest tells."""
+"""Additions of other programs to a finished file, and changes in it that no digest tells."""
 
 from __future__ import annotations
 

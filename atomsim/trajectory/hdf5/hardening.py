@@ -1,4 +1,4 @@
-"""Opening only named, plain objects of an HDF5 file; knows nothing of what a trajectory holds.
+"""Hardened access to an HDF5 file: named objects are read that are plainly stored in it, and no others.
 
 HDF5 can lead a reader to other files (links, virtual and external datasets), through code loaded for the occasion
 (filters), and to a thousand times the memory that the file takes on the disk. What is not plainly stored in this very

@@ -1,4 +1,4 @@
-"""Reading a finished HDF5 file; knows nothing of journals."""
+"""The reader of a finished HDF5 file."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Finished:
             raise odd("it is compressed in another way")
 
 
-def is_ours(path: Path) -> bool | None:
+def has_ours(path: Path) -> bool | None:
     """Tell whether an HDF5 file has anything of ours in it; None if it is too damaged to tell."""
     try:
         with _opened(path) as file:

@@ -1,4 +1,4 @@
-"""A file to which HDF5 can write without ever seeing an error; knows nothing of what is written.
+"""A file to which HDF5 can write without ever seeing an error.
 
 An input/output error inside HDF5 can crash the interpreter. So the first one is kept back, HDF5 is told that all is
 well until it has finished, and only then is the error raised.

@@ -1,4 +1,4 @@
-"""From the journal to the finished HDF5 file, in the layout of H5MD 1.1; knows nothing of running or resuming.
+"""The writer of the finished HDF5 file, in the layout of H5MD 1.1.
 
 The bytes depend on the frames alone, not on how the journal groups them or how often the run was stopped.
 """
@@ -16,7 +16,7 @@ import numpy as np
 from atomsim.trajectory.hdf5 import MEMORY, NUMBERS, PARAMETERS, PARTICLES, chunk_rows
 from atomsim.trajectory.hdf5.sink import Sink
 from atomsim.trajectory.header import End, Header, contents_digest, document, fields, storable
-from atomsim.trajectory.interrupts import held
+from atomsim.trajectory.interrupts import postponed
 from atomsim.trajectory.journal.read import Journal
 from atomsim.trajectory.rows import OBSERVABLES, Rows, Series
 
@@ -53,7 +53,7 @@ def write(journal: Journal, path: Path, report: Report | None = None) -> None:
     Raises:
         OSError: the disk does not take it.
     """
-    with Sink(path) as sink, held() as let_interrupts_through:
+    with Sink(path) as sink, postponed() as let_interrupts_through:
 
         def between_pieces(n_written: int) -> None:
             sink.check()

@@ -1,4 +1,4 @@
-"""Reading a journal, up to the first record that is not whole; knows nothing of HDF5."""
+"""The reader of a journal, up to the first record that is not whole."""
 
 from __future__ import annotations
 

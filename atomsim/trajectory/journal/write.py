@@ -1,4 +1,4 @@
-"""Writing a journal, also when another program changes it under the run that writes it."""
+"""The writer of a journal, which goes on when another program changes it under the run."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from atomsim.trajectory.interrupts import held
+from atomsim.trajectory.interrupts import postponed
 
 NUMBERS = (signal.SIGINT, signal.SIGTERM)
 
@@ -24,7 +24,7 @@ def arrived() -> Iterator[list[int]]:
 
 
 def test_signals_wait_until_the_end(arrived: list[int]) -> None:
-    with held():
+    with postponed():
         signal.raise_signal(signal.SIGTERM)
         signal.raise_signal(signal.SIGINT)
         assert arrived == []
@@ -34,7 +34,7 @@ def test_signals_wait_until_the_end(arrived: list[int]) -> None:
 
 
 def test_signals_that_are_let_through_do_not_come_again(arrived: list[int]) -> None:
-    with held() as let_through:
+    with postponed() as let_through:
         signal.raise_signal(signal.SIGINT)
         let_through()
         assert arrived == [signal.SIGINT]
@@ -49,7 +49,7 @@ def test_a_failure_inside_lets_them_through_as_well(arrived: list[int]) -> None:
         signal.raise_signal(signal.SIGINT)
         raise OSError
 
-    with pytest.raises(OSError), held():  # noqa: PT011 - nobody else raises it
+    with pytest.raises(OSError), postponed():  # noqa: PT011 - nobody else raises it
         fail()
     assert arrived == [signal.SIGINT]
 
@@ -58,7 +58,7 @@ def test_what_a_handler_raises_comes_when_it_is_let_through() -> None:
     reached = []
 
     def be_interrupted() -> None:
-        with held() as let_through:
+        with postponed() as let_through:
             signal.raise_signal(signal.SIGINT)
             reached.append("before")
             let_through()
@@ -76,7 +76,7 @@ def test_what_a_handler_raises_comes_when_it_is_let_through() -> None:
 
 def test_signals_that_are_ignored_stay_ignored(arrived: list[int]) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    with held():
+    with postponed():
         signal.raise_signal(signal.SIGTERM)
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
     assert arrived == []
@@ -87,7 +87,7 @@ def test_other_threads_hold_nothing() -> None:
     done = []
 
     def work() -> None:
-        with held() as let_through:
+        with postponed() as let_through:
             let_through()
             done.append(True)
 
