@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from atomsim import arguments
 from atomsim.core.backend import MakeStepper, Stepper
 from atomsim.core.diagnosis.blowup import explain, loss, not_again
-from atomsim.core.diagnosis.energy import EnergyBudget
+from atomsim.core.diagnosis.energy import EnergyBudget, size
 from atomsim.core.digest import state_digest
 from atomsim.core.forces import held_atoms
 from atomsim.core.model import Floats, Frame, Model, Observables, State
 from atomsim.core.observables import Observer
 from atomsim.core.pace import Pace, Report
-from atomsim.errors import BlowUpError, InputError
+from atomsim.errors import BlowUpError
 
 
 class Simulation:
@@ -41,7 +43,7 @@ class Simulation:
         self._observer = Observer(model)
         self._held = held_atoms(model.forces)
         self._budget = EnergyBudget(model, first, self._observer.observe(first))
-        self._driven = 0.0
+        self._driven, self._pushed = 0.0, self._pushed_per_round()
         self._stand_at(state)
 
     def _stand_at(self, state: State) -> None:
@@ -88,16 +90,12 @@ class Simulation:
             impulse: what is added to j of every atom per round [velocity], (n_atoms, 3); None for nothing.
 
         Raises:
-            InputError: it has another shape, or numbers that are not finite.
+            InputError: it is no such array, or has numbers that are not finite.
         """
         if impulse is not None:
-            impulse = np.array(impulse, dtype=np.float64)
-            shape = (self._model.n_atoms, 3)
-            if impulse.shape != shape:
-                raise InputError(f"forces need the shape {shape}, a vector for each atom (got {impulse.shape})")
-            if not np.isfinite(impulse).all():
-                raise InputError("forces need finite numbers")
+            impulse = _vectors("impulse", impulse, self._model.n_atoms)
         self._forces = impulse
+        self._pushed = self._pushed_per_round()
         self._stepper.set_forces(impulse)
 
     def replace_model(self, model: Model) -> None:
@@ -109,8 +107,9 @@ class Simulation:
         Raises:
             InputError: it has other atoms.
         """
+        arguments.instance("model", model, Model, arguments.MODEL)
         if model.n_atoms != self._model.n_atoms:
-            raise InputError(f"a model of {model.n_atoms} atoms cannot go on with {self._model.n_atoms}")
+            raise arguments.refused("model", f"a model of {self._model.n_atoms} atoms", model.n_atoms)
         self._begin(model, self._state, self._state)
 
     def step(self, n_rounds: int = 1, report: Report | None = None) -> bool:
@@ -125,36 +124,37 @@ class Simulation:
 
         Raises:
             InputError: a number of rounds below 0.
-            BlowUpError: a number left the finite, an atom flew off, or energy came from nowhere; the simulation stands
-                where it stood before the step.
+            BlowUpError: a number left the finite, an atom flew off, or energy came from nowhere.
+
+        Whatever is raised, also by the report or by Ctrl-C, the simulation stands where it stood before the step.
         """
         n_rounds = arguments.whole("n_rounds", n_rounds, least=0)
         before = self._state
-        n_done, goes_on = self._pace.advance(self._stepper, before.round_index, n_rounds, report)
-        if n_done:
-            self._state, self._observables = self._stepper.state(), None
-            self._check(before, n_done)
+        try:
+            n_done, goes_on = self._pace.advance(self._stepper, before.round_index, n_rounds, report)
+            if n_done:
+                self._state, self._observables = self._stepper.state(), None
+                self._check(before, n_done)
+        except BaseException:
+            self._stand_at(before)
+            raise
         return goes_on
 
     def _check(self, before: State, n_rounds: int) -> None:
-        """Raise, and go back to the state before so many rounds, if the simulation has blown up in one of them."""
-        pushed = self._pushed_per_round()
-        driven = self._driven + n_rounds * pushed
+        """Raise if the simulation has blown up in one of so many rounds."""
+        driven = self._driven + n_rounds * self._pushed
         lost = loss(self._model, self._state, self.measure(), self._budget, driven)
-        if lost is None:
-            self._driven = driven
-            return
-        error = BlowUpError(self._report(before, lost, pushed))
-        self._stand_at(before)
-        raise error
+        if lost is not None:
+            raise BlowUpError(self._report(before, lost))
+        self._driven = driven
 
-    def _report(self, before: State, lost: str, pushed: float) -> str:
+    def _report(self, before: State, lost: str) -> str:
         """Go through the rounds since a sound state again, one by one, and say in which it happened and how."""
         model, last = self._model, self._state
         stepper, observer, driven, sound = self._stepper_at(before), Observer(model), self._driven, before
         while sound.round_index < last.round_index:
             stepper.advance(1)
-            state, driven = stepper.state(), driven + pushed
+            state, driven = stepper.state(), driven + self._pushed
             lost_here = loss(model, state, observer.observe(state), self._budget, driven)
             if lost_here is not None:
                 return explain(model, self._first, sound, state, lost_here, self._forces)
@@ -167,10 +167,27 @@ class Simulation:
             return 0.0
         forces = self._forces.copy()
         forces[self._held] = 0.0
-        return float(np.sqrt((forces * forces).sum()))
+        return size(forces)
 
 
 def frame_of(model: Model, state: State, observables: Observables) -> Frame:
     """Return a round as it is recorded."""
     digest = state_digest(state.position, state.velocity, state.memory)
     return Frame(state, state.round_index * model.time_step, digest, observables)
+
+
+def _vectors(name: str, value: Any, n_atoms: int) -> Floats:
+    """Return a copy of an argument that is a finite vector for each atom."""
+    needs, got = f"finite numbers in the shape ({n_atoms}, 3)", value
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise arguments.refused(name, needs, value) from None
+    is_finite = np.isfinite(array)
+    if array.shape != (n_atoms, 3):
+        got = array.shape
+    elif not is_finite.all():
+        got = float(array[~is_finite][0])
+    else:
+        return array
+    raise arguments.refused(name, needs, got)

@@ -138,17 +138,21 @@ def test_what_is_held_is_not_pushed(make_stepper: MakeStepper) -> None:
 
 
 @pytest.mark.parametrize(
-    ("impulse", "message"),
+    ("impulse", "got"),
     [
-        (np.zeros(3), r"forces need the shape \(2, 3\), a vector for each atom \(got \(3,\)\)"),
-        (np.zeros((3, 3)), r"forces need the shape \(2, 3\)"),
-        (np.array([[0, 0, np.nan], [0, 0, 0]]), "forces need finite numbers"),
+        (np.zeros(3), "(3,)"),
+        (np.zeros((3, 3)), "(3, 3)"),
+        ([[1, 2, 3], [4, 5]], "[[1, 2, 3], [4, 5]]"),
+        ("north", "'north'"),
+        (np.array([[0, 0, np.nan], [0, 0, 0]]), "nan"),
+        ([[0, 0, 0], [0, np.inf, np.inf]], "inf"),
     ],
 )
-def test_forces_that_make_no_sense(impulse: Floats, message: str) -> None:
+def test_forces_that_make_no_sense(impulse: Any, got: str) -> None:
     simulation = Simulation(*compiled(PAIR), NumpyStepper)
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError) as caught:
         simulation.set_forces(impulse)
+    assert str(caught.value) == f"impulse: needs finite numbers in the shape (2, 3) (got {got})"
     simulation.step()
     assert not simulation.state.velocity.any()
 
@@ -182,6 +186,41 @@ def test_a_run_that_ends_between_two_frames_ends_with_the_one_before(monkeypatch
     assert [frame.round_index for frame in frames] == [0, 10]
 
 
+@every_backend
+@pytest.mark.parametrize("what", [KeyboardInterrupt, ValueError])
+def test_whatever_ends_a_step_the_simulation_is_whole(
+    monkeypatch: pytest.MonkeyPatch, make_stepper: MakeStepper, what: type[BaseException]
+) -> None:
+    """As when somebody presses Ctrl-C in a notebook, and goes on."""
+    monkeypatch.setattr("atomsim.core.pace.REPORT_SECONDS", 1e9)
+    model, state = compiled(**EVERYTHING)
+    simulation = Simulation(model, state, make_stepper)
+    simulation.set_forces(winds(model.n_atoms))
+    simulation.step(5)
+    before = digest_of(simulation.state)
+
+    def fail(reached: int) -> None:
+        if reached > 10:
+            raise what
+
+    with pytest.raises(what):
+        simulation.step(30, fail)
+    assert (simulation.round_index, digest_of(simulation.state)) == (5, before)
+    simulation.step(35)
+    whole = Simulation(model, state, NumpyStepper)
+    whole.set_forces(winds(model.n_atoms))
+    whole.step(40)
+    assert digest_of(simulation.state) == digest_of(whole.state)
+
+
+def test_forces_beyond_all_numbers_are_told_as_a_blow_up() -> None:
+    """Their squares are not finite, and no warning comes of it."""
+    simulation = Simulation(*compiled(PAIR), NumpyStepper)
+    simulation.set_forces([[1e200, 0, 0], [0, 0, 0]])
+    with pytest.raises(BlowUpError, match="flew off"):
+        simulation.step(3)
+
+
 def too_stiff() -> tuple[Model, State]:
     rod = {"rod": {"shape": "string", "count": 12, "step": [1.5, 0, 0], "velocity": [0, 0, 1]}}
     bonds = {"b": {"within": "rod", "rule": "all-pairs"}}
@@ -211,7 +250,7 @@ def test_other_laws_go_on_from_the_present_state() -> None:
     assert simulation.round_index == 5
     assert simulation.state.velocity.tolist() == [[5, 0, -2], [0, 0, -2]], "forces from outside stay"
     assert simulation.frame().time == 5.0
-    with pytest.raises(InputError, match="a model of 3 atoms cannot go on with 2"):
+    with pytest.raises(InputError, match=r"model: needs a model of 2 atoms \(got 3\)"):
         simulation.replace_model(compiled({"b": {"shape": "string", "count": 3, "step": [3, 0, 0]}})[0])
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from atomsim.core.forces import acting, held_atoms, strength
-from atomsim.core.model import Model, Observables, State
+from atomsim.core.model import Floats, Model, Observables, State
 
 SLACK = 1000.0
 """How far above its budget the energy must be; it swings by such factors only close to the stability limit."""
@@ -36,13 +36,11 @@ class EnergyBudget:
         push = np.zeros(model.n_atoms)
         self._is_known = True
         for force in acting(model.forces):
-            size = strength(force)
-            self._is_known &= size is not None
-            push[force.atoms] += size or 0.0
+            most = strength(force)
+            self._is_known &= most is not None
+            push[force.atoms] += most or 0.0
         self._is_known &= not first.velocity[held_atoms(model.forces)].any()
-        largest = float(push.max()) or 1.0
-        share = push / largest  # squares of the pushes themselves may not be finite
-        self._push = largest * float(np.sqrt((share * share).sum()))
+        self._push = size(push)
 
     def at(self, round_index: int, driven: float = 0.0) -> float:
         """Return the most energy that can be explained at a round.
@@ -55,6 +53,13 @@ class EnergyBudget:
             return math.inf
         root = self._begin + self._push * (round_index - self._first_round) + driven
         return SLACK * 0.5 * root * root + self._trifle  # a power would raise where a product becomes infinite
+
+
+def size(numbers: Floats) -> float:
+    """Return √Σ x² of all numbers, also where a square alone would not be finite."""
+    largest = float(np.abs(numbers).max()) or 1.0
+    share = numbers / largest
+    return largest * float(np.sqrt((share * share).sum()))
 
 
 def total_energy(observables: Observables) -> float:
