@@ -39,7 +39,7 @@ KINDS: dict[str, Kind] = {
     "idle": Kind("warning"),
     "hovers": Kind("warning"),
     "floating-support": Kind("note"),
-    "unsupported": Kind("warning", {"ghost-contact": "groups"}),
+    "unsupported": Kind("warning", {"ghost-contact": "groups", "hole": "groups", "in-pieces": "groups"}),
     "too-late": Kind("warning", {"over-damped": "groups"}),
     "force-on-held": Kind("warning"),
     "force-never-acts": Kind("warning"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 
 def counted(number: int, noun: str) -> str:
@@ -42,3 +43,16 @@ def round_up(number: float) -> float:
     """
     power = 10.0 ** (math.floor(math.log10(number)) - 1)
     return float(f"{(math.floor(number / power * (1 + 1e-9)) + 1) * power:g}")
+
+
+def direction_in_words(direction: Sequence[float]) -> str:
+    """Write a direction: an axis where it is along one, else its parts.
+
+    >>> direction_in_words([0, 0, -0.003]), direction_in_words([1.0, 0, 1.0])
+    ('−z', '[0.71, 0, 0.71]')
+    """
+    length = math.sqrt(sum(part * part for part in direction))
+    for axis, part in zip("xyz", direction, strict=True):
+        if abs(part) > 0.999 * length:
+            return f"{'+' if part > 0 else '−'}{axis}"
+    return f"[{', '.join(f'{part / length:.2g}' for part in direction)}]"

@@ -18,10 +18,16 @@ MOST_TRIED = 300
 
 def is_declared(table: CollisionTable, first: Indices, second: Indices) -> Mask:
     """Return which pairs of atoms a table lets collide, (n_pairs,)."""
-    declared = np.zeros(first.size, dtype=bool)
+    mentioned = is_mentioned(table, first, second)
+    return mentioned if table.bound is None else mentioned & ~are_bound(table.bound, first, second)
+
+
+def is_mentioned(table: CollisionTable, first: Indices, second: Indices) -> Mask:
+    """Return which pairs of atoms a table speaks of, if only to leave them out as bound, (n_pairs,)."""
+    mentioned = np.zeros(first.size, dtype=bool)
     for block in table.blocks:
-        declared |= _is_in(block, first, second)
-    return declared if table.bound is None else declared & ~are_bound(table.bound, first, second)
+        mentioned |= _is_in(block, first, second)
+    return mentioned
 
 
 def _is_in(block: Block, first: Indices, second: Indices) -> Mask:

@@ -10,45 +10,56 @@ import numpy as np
 
 from atomsim.core.model import Model, State
 from atomsim.findings.before.declared_twice import declared_twice
+from atomsim.findings.before.floating_support import floating_support
 from atomsim.findings.before.force_never_acts import force_never_acts
+from atomsim.findings.before.ghost_contact import ghost_contact
 from atomsim.findings.before.held import collision_of_held, force_on_held
+from atomsim.findings.before.hole import hole
 from atomsim.findings.before.idle import idle
 from atomsim.findings.before.in_pieces import in_pieces
 from atomsim.findings.before.no_such_round import no_such_round
+from atomsim.findings.before.over_damped import over_damped
 from atomsim.findings.before.over_stiff import over_stiff
 from atomsim.findings.before.overlap_at_start import overlap_at_start
 from atomsim.findings.before.prestressed import prestressed
 from atomsim.findings.before.rule_misses_group import rule_misses_group
+from atomsim.findings.before.symmetric import symmetric
+from atomsim.findings.before.too_late import too_late
 from atomsim.findings.before.tunnelling import tunnelling
+from atomsim.findings.before.unsupported import unsupported
 from atomsim.findings.before.weld import weld
 from atomsim.findings.finding import Finding, Symptom, finding, without_consequences
 from atomsim.findings.silence import needless_silences, without_silenced
-from atomsim.findings.subject import Subject
+from atomsim.findings.subject import Subject, TooLargeError
 from atomsim.scene.loader import LoadedScene
 
 Diagnosis: TypeAlias = Callable[[Subject], Iterator[Symptom]]
 
-ANY = 1 << 62
-"""As many atoms as there are."""
-
-DIAGNOSES: dict[str, tuple[Diagnosis, int]] = {
-    "tunnelling": (tunnelling, ANY),
-    "in-pieces": (in_pieces, ANY),
-    "rule-misses-group": (rule_misses_group, ANY),
-    "over-stiff": (over_stiff, ANY),
-    "weld": (weld, ANY),
-    "declared-twice": (declared_twice, ANY),
-    "idle": (idle, ANY),
-    "force-on-held": (force_on_held, ANY),
-    "force-never-acts": (force_never_acts, ANY),
-    "collision-of-held": (collision_of_held, ANY),
-    "overlap-at-start": (overlap_at_start, ANY),
-    "prestressed": (prestressed, ANY),
-    "no-such-round": (no_such_round, ANY),
+DIAGNOSES: dict[str, Diagnosis] = {
+    "tunnelling": tunnelling,
+    "in-pieces": in_pieces,
+    "rule-misses-group": rule_misses_group,
+    "over-stiff": over_stiff,
+    "weld": weld,
+    "declared-twice": declared_twice,
+    "idle": idle,
+    "force-on-held": force_on_held,
+    "force-never-acts": force_never_acts,
+    "collision-of-held": collision_of_held,
+    "overlap-at-start": overlap_at_start,
+    "prestressed": prestressed,
+    "floating-support": floating_support,
+    "ghost-contact": ghost_contact,
+    "hole": hole,
+    "over-damped": over_damped,
+    "symmetric": symmetric,
+    "too-late": too_late,
+    "unsupported": unsupported,
+    "no-such-round": no_such_round,
 }
-"""What looks for each kind of finding, and for how many atoms at most it is worth its time."""
+"""What looks for each kind of finding."""
 
-ONLY_BEFORE = DIAGNOSES.keys() - {"tunnelling"}
+ONLY_BEFORE = DIAGNOSES.keys() - {"ghost-contact", "tunnelling", "hole", "unsupported", "too-late", "symmetric"}
 """Of these a run tells nothing new."""
 
 
@@ -78,11 +89,11 @@ def examine(loaded: LoadedScene, model: Model, state: State) -> Examination:
     found: list[Finding] = []
     skipped = []
     with np.errstate(all="ignore"):  # infinite is a fair answer to absurd numbers
-        for code, (diagnosis, most_atoms) in DIAGNOSES.items():
-            if model.n_atoms > most_atoms:
+        for code, diagnosis in DIAGNOSES.items():
+            try:
+                found += [finding(code, "before", symptom, source) for symptom in diagnosis(subject)]
+            except (TooLargeError, MemoryError):
                 skipped.append(code)
-            else:
-                found += (finding(code, "before", symptom, source) for symptom in diagnosis(subject))
     codes = ONLY_BEFORE - set(skipped)
     kept = without_consequences(without_silenced(found, scene))
     kept += needless_silences(found, scene, source, "before", codes)
