@@ -25,6 +25,15 @@ def listed(names: list[str]) -> str:
     return f"{', '.join(most)} and {last}" if most else last
 
 
+def verb(names: list[str], one: str, several: str) -> str:
+    """Return the form of a verb that goes with some names.
+
+    >>> verb(["left"], "moves", "move"), verb(["left", "right"], "moves", "move")
+    ('moves', 'move')
+    """
+    return one if len(names) == 1 else several
+
+
 def round_down(number: float) -> float:
     """Return the number of one digit that is not above a positive number: what a person would try.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from atomsim.core.diagnosis.numbering import numbered
 from atomsim.core.model import (
     DampingForce,
     ExternalForce,
@@ -191,20 +192,20 @@ def movers(model: Model, state: State, body: Indices, group: Indices) -> list[Mo
     is_loose = is_free & (size[body] == 1)
     alike = _alike(model, state, group)
     names = np.where(is_loose, model.n_atoms + alike, body)
-    name, number = np.unique(names[is_free], return_inverse=True)
-    if name.size > MOST_MOVERS:
+    number = numbered(names[is_free])
+    n_movers = int(number.max(initial=-1)) + 1
+    if n_movers > MOST_MOVERS:
         raise TooManyMoversError
     free = np.flatnonzero(is_free)
     order = np.argsort(number, kind="stable")
-    parts = np.split(free[order], np.cumsum(np.bincount(number, minlength=name.size))[:-1])
+    parts = np.split(free[order], np.cumsum(np.bincount(number, minlength=n_movers))[:-1])
     return [_mover(model, state, atoms, alike, bool(is_loose[atoms[0]])) for atoms in parts if atoms.size]
 
 
 def _alike(model: Model, state: State, group: Indices) -> Indices:
     """Number the atoms of a group that start with one velocity and that the same forces act on alike, (n_atoms,)."""
     acted = [np.isin(np.arange(model.n_atoms), force.atoms) for force in model.forces]
-    key = np.stack([group.astype(np.float64), *state.velocity.T, *(column.astype(np.float64) for column in acted)])
-    return np.unique(key, axis=1, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    return numbered(group, *state.velocity.T, *acted)
 
 
 def _mover(model: Model, state: State, atoms: Indices, alike: Indices, is_loose: bool) -> Mover:

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from atomsim.core.diagnosis.flight import Flight, Mover, Path
 from atomsim.core.diagnosis.meeting import Meeting, first_meeting
+from atomsim.core.diagnosis.numbering import numbered
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Model, State
+from atomsim.core.pairs.near import distinct
 
 Mask = NDArray[np.bool_]
 
@@ -100,7 +102,7 @@ class Surroundings:
 
     def _kinds(self, mover: Mover, partners: Indices) -> Iterator[tuple[Indices, Path]]:
         """Yield partners that move alike, with the path of the mover as they see it."""
-        for number in np.unique(self._mover[partners]).tolist():
+        for number in distinct([self._mover[partners]]).tolist():
             atoms = partners[self._mover[partners] == number]
             if number >= 0:
                 other = self._movers[number]
@@ -109,9 +111,11 @@ class Surroundings:
                     yield atoms, mover.flight.minus(other.flight, stopped)
                 continue
             velocity = np.where(self._is_held[atoms, None], self._state.velocity[atoms], 0.0)
-            for each in np.unique(velocity, axis=0):
-                alike = atoms[(velocity == each).all(axis=1)]
-                yield alike, mover.flight.minus(Flight(self._time_step, each, 0.0, ()))
+            number = numbered(*velocity.T)
+            for each in range(int(number.max(initial=-1)) + 1):
+                alike = number == each
+                drift = Flight(self._time_step, velocity[alike.argmax()], 0.0, ())
+                yield atoms[alike], mover.flight.minus(drift)
 
     def _meeting(self, mover: Mover, atoms: Indices, path: Path, near: float, last: float) -> Meeting | None:
         """Return the first meeting with atoms that move alike; what turns is taken for a ball."""

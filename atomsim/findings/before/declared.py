@@ -68,7 +68,10 @@ def _common_sides(one: Block, other: Block) -> Iterator[tuple[Indices, Indices]]
     """Yield sets of atoms such that every pair from both sets is in both blocks, but for `min_gap`."""
     partner_left, partner_right = _sides(other)
     for left, right in (_sides(one), _sides(one)[::-1]):
-        yield np.intersect1d(left, partner_left), np.intersect1d(right, partner_right)
+        yield (
+            np.intersect1d(left, partner_left, assume_unique=True),
+            np.intersect1d(right, partner_right, assume_unique=True),
+        )
 
 
 def _candidates(left: Indices, right: Indices, *, only_ends: bool) -> Iterator[tuple[Indices, Indices]]:

@@ -11,6 +11,7 @@ import numpy as np
 from atomsim.core.model import Model, State
 from atomsim.findings.before.declared_twice import declared_twice
 from atomsim.findings.before.floating_support import floating_support
+from atomsim.findings.before.floppy import floppy, loose_joint
 from atomsim.findings.before.force_never_acts import force_never_acts
 from atomsim.findings.before.ghost_contact import ghost_contact
 from atomsim.findings.before.held import collision_of_held, force_on_held
@@ -18,6 +19,7 @@ from atomsim.findings.before.hole import hole
 from atomsim.findings.before.idle import idle
 from atomsim.findings.before.in_pieces import in_pieces
 from atomsim.findings.before.no_such_round import no_such_round
+from atomsim.findings.before.off_camera import off_camera
 from atomsim.findings.before.over_damped import over_damped
 from atomsim.findings.before.over_stiff import over_stiff
 from atomsim.findings.before.overlap_at_start import overlap_at_start
@@ -37,6 +39,8 @@ Diagnosis: TypeAlias = Callable[[Subject], Iterator[Symptom]]
 
 DIAGNOSES: dict[str, Diagnosis] = {
     "tunnelling": tunnelling,
+    "floppy": floppy,
+    "loose-joint": loose_joint,
     "in-pieces": in_pieces,
     "rule-misses-group": rule_misses_group,
     "over-stiff": over_stiff,
@@ -55,11 +59,20 @@ DIAGNOSES: dict[str, Diagnosis] = {
     "symmetric": symmetric,
     "too-late": too_late,
     "unsupported": unsupported,
+    "off-camera": off_camera,
     "no-such-round": no_such_round,
 }
 """What looks for each kind of finding."""
 
-ONLY_BEFORE = DIAGNOSES.keys() - {"ghost-contact", "tunnelling", "hole", "unsupported", "too-late", "symmetric"}
+ONLY_BEFORE = DIAGNOSES.keys() - {
+    "ghost-contact",
+    "tunnelling",
+    "hole",
+    "unsupported",
+    "too-late",
+    "symmetric",
+    "off-camera",
+}
 """Of these a run tells nothing new."""
 
 
@@ -91,7 +104,8 @@ def examine(loaded: LoadedScene, model: Model, state: State) -> Examination:
     with np.errstate(all="ignore"):  # infinite is a fair answer to absurd numbers
         for code, diagnosis in DIAGNOSES.items():
             try:
-                found += [finding(code, "before", symptom, source) for symptom in diagnosis(subject)]
+                for symptom in diagnosis(subject):
+                    found.append(finding(code, "before", symptom, source))  # noqa: PERF401  # what comes before a stop is kept
             except (TooLargeError, MemoryError):
                 skipped.append(code)
     codes = ONLY_BEFORE - set(skipped)

@@ -9,7 +9,7 @@ import numpy as np
 from atomsim.core.model import OscillateForce, PushForce, TetherForce, TorqueForce
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import listed
+from atomsim.findings.words import listed, verb
 
 
 def floating_support(subject: Subject) -> Iterator[Symptom]:
@@ -33,8 +33,8 @@ def floating_support(subject: Subject) -> Iterator[Symptom]:
             at=("groups", groups[0]),
             names=(*subject.group_paths(atoms), *subject.group_paths(ahead.mover.atoms)),
             message=(
-                f"{listed(falling)} falls onto {listed(groups)}, which nothing holds: it will sink and drift away with "
-                "what it carries"
+                f"{listed(falling)} {verb(falling, 'falls', 'fall')} onto {listed(groups)}, which nothing holds: "
+                f"{verb(groups, 'it', 'they')} will sink and drift away with the load"
             ),
             remedy={
                 "forces": {subject.new_name("forces", "ground"): {"kind": "hold", "acts_on": groups[0]}},

@@ -9,7 +9,7 @@ import numpy as np
 
 from atomsim.core.model import Indices
 from atomsim.core.pairs.collisions import involved_atoms
-from atomsim.core.pairs.near import near_pairs, pair_squares
+from atomsim.core.pairs.near import distinct, near_pairs, pair_squares
 from atomsim.findings.before.declared import is_mentioned
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import MOST_FOLLOWED, Mask, Subject, TooLargeError
@@ -37,7 +37,7 @@ def _overlapping(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
     first, second = first[may_pass], second[may_pass]
     squared = pair_squares(position, first, second)
     key = subject.group[first] * len(subject.model.groups) + subject.group[second]
-    for pair in np.unique(key).tolist():
+    for pair in distinct([key]).tolist():
         one, other = divmod(pair, len(subject.model.groups))
         yield one, other, math.sqrt(float(squared[key == pair].min())), 0
 
@@ -60,7 +60,7 @@ def _crossed(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
     for mover in subject.movers:
         if involved[mover.atoms].any() or mover.is_turning:
             continue
-        own = np.unique(subject.group[mover.atoms])
+        own = distinct([subject.group[mover.atoms]])
         is_stranger: Mask = ~np.asarray(subject.are_joined[own].any(axis=0))
         is_stranger[own] = False
         strangers = np.flatnonzero(is_stranger[subject.group])

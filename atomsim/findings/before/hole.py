@@ -9,6 +9,7 @@ import numpy as np
 
 from atomsim.core.diagnosis.outlook import may_touch
 from atomsim.core.model import Floats, GroupSpan, Indices
+from atomsim.core.pairs.near import distinct
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
 from atomsim.findings.words import listed
@@ -63,7 +64,7 @@ def _partners(subject: Subject, atoms: Indices) -> list[GroupSpan]:
     partners = may_touch(subject.model.collisions, atoms, subject.model.n_atoms)
     if subject.is_held[atoms].all():
         partners = partners[~subject.is_held[partners]]
-    return [subject.model.groups[number] for number in np.unique(subject.group[partners]).tolist()]
+    return [subject.model.groups[number] for number in distinct([subject.group[partners]]).tolist()]
 
 
 def _half_extent(subject: Subject, span: GroupSpan) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from atomsim.core.diagnosis.numbering import numbered
 from atomsim.findings.before.gaps import places, widest_gap
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
@@ -28,7 +29,7 @@ def _in_pieces(subject: Subject, name: str, rule: DistanceThresholdBonds, expres
     for number in sorted(set(subject.group[selected].tolist())):
         is_here = subject.group[selected] == number
         atoms = selected[is_here]
-        size = np.unique(subject.body[atoms], return_counts=True)[1]
+        size = np.bincount(numbered(subject.body[atoms]))
         if size.size == 1 or not is_bound[atoms].any():
             continue
         group = subject.model.groups[number].name

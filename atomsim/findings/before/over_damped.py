@@ -10,7 +10,7 @@ from atomsim.core.diagnosis.flight import Drive, Flight, Mover
 from atomsim.core.model import DampingForce
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import listed
+from atomsim.findings.words import listed, verb
 from atomsim.scene.language import Gravity
 
 SHORT_WAY = 1.0
@@ -72,9 +72,9 @@ def _symptom(
             *(("forces", drive.force.origin.name) for drive in drives),
         ),
         message=(
-            f"`coefficient: {damping.coefficient:g}` takes {damping.coefficient:.0%} of the velocity in every round, "
-            f"so {listed(groups)} gets {way:.2g} far in {subject.scene.rounds:,} rounds, where it would get {free:.3g} "
-            "without it"
+            f"`coefficient: {damping.coefficient:g}` takes {damping.coefficient:.0%} of the velocity each round, so "
+            f"{listed(groups)} {verb(groups, 'gets', 'get')} {way:.2g} far in {subject.scene.rounds:,} rounds; without "
+            f"it, {free:.3g}"
         ),
         remedy={"forces": {name: {"coefficient": coefficient}}},
     )

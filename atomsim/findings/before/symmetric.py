@@ -9,10 +9,10 @@ import numpy as np
 from atomsim.core.diagnosis.meeting import Meeting
 from atomsim.core.diagnosis.outlook import Outlook
 from atomsim.core.model import Indices
-from atomsim.core.pairs.near import near_pairs
+from atomsim.core.pairs.near import distinct, near_pairs
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import listed
+from atomsim.findings.words import listed, verb
 
 OFF_AXIS = 1e-9
 """Who falls onto another this far off its middle [length] falls exactly onto it."""
@@ -41,7 +41,7 @@ def _exactly_below(subject: Subject, ahead: Outlook, meeting: Meeting) -> Indice
     across = [atoms - along[:, None] * (along @ atoms) for atoms in (moving, met)]
     one, other = near_pairs(across[0], across[1], OFF_AXIS)
     is_ahead = along @ (met[:, other] - moving[:, one]) > 0.0
-    return partners[np.unique(other[is_ahead])]
+    return partners[distinct([other[is_ahead]])]
 
 
 def _symptom(subject: Subject, ahead: Outlook, exact: Indices) -> Symptom:
@@ -50,8 +50,8 @@ def _symptom(subject: Subject, ahead: Outlook, exact: Indices) -> Symptom:
         at=("groups", groups[0]),
         names=(*subject.group_paths(ahead.mover.atoms), *subject.group_paths(exact)),
         message=(
-            f"{listed(groups)} falls exactly onto atoms of {listed(partners)}, so a rounding error decides to which "
-            "side it rolls off, if at all"
+            f"{listed(groups)} {verb(groups, 'falls', 'fall')} exactly onto atoms of {listed(partners)}, so a rounding "
+            "error decides to which side it rolls off, if at all"
         ),
         remedy={"jitter": {"amplitude": 0.001}},
         rounds=(int(np.ceil(ahead.first.round_index)),) if ahead.first is not None else (),

@@ -11,7 +11,7 @@ from atomsim.core.pairs.collisions import involved_atoms
 from atomsim.findings.before.declared import sides
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import listed, round_down
+from atomsim.findings.words import listed, round_down, verb
 
 FASTEST = 1.0
 """Two atoms that each move so far per round [length] can change places: contact is at distance 2."""
@@ -45,6 +45,7 @@ def _symptom(subject: Subject, fast: list[str], tables: list[CollisionTable], sp
     advice, remedy = "", {}
     if 1e-300 < (time_step := 0.5 * subject.model.time_step / furthest) < np.inf:
         advice, remedy = f"; try time_step {round_down(time_step):g}", {"time_step": round_down(time_step)}
+    collisions = [f"collisions.{table.origin.name}" for table in tables]
     others = tuple(path for path in subject.group_paths(atoms) if path[1] not in fast)
     return Symptom(
         at=("groups", fast[0]),
@@ -55,8 +56,8 @@ def _symptom(subject: Subject, fast: list[str], tables: list[CollisionTable], sp
         ),
         message=(
             f"atoms of {listed(fast)} move {furthest:.3g} per round, so they may pass unseen through what "
-            f"{listed([f'collisions.{table.origin.name}' for table in tables])} "
-            f"{'lets' if len(tables) == 1 else 'let'} them touch (contact is at distance 2){advice}"
+            f"{listed(collisions)} "
+            f"{verb(collisions, 'lets', 'let')} them touch (contact is at distance 2){advice}"
         ),
         remedy=remedy,
         rounds=(0,),

@@ -11,7 +11,7 @@ from atomsim.core.diagnosis.outlook import CONTACT, Outlook
 from atomsim.core.model import Floats, OscillateForce, PushForce, TetherForce, TorqueForce
 from atomsim.findings.finding import Remedy, Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import direction_in_words, listed
+from atomsim.findings.words import direction_in_words, listed, verb
 from atomsim.scene.language import Gravity
 
 FARTHEST_OUT = 2.0
@@ -74,7 +74,8 @@ def _alone(subject: Subject, ahead: Outlook, drive: Drive) -> Symptom:
         at=("groups", groups[0]),
         names=(*subject.group_paths(ahead.mover.atoms), ("forces", drive.force.origin.name)),
         message=(
-            f"{listed(groups)} may touch nothing, and forces.{drive.force.origin.name} carries it out of the scene"
+            f"{listed(groups)} may touch nothing, and forces.{drive.force.origin.name} carries "
+            f"{verb(groups, 'it', 'them')} out of the scene"
         ),
         remedy=_collision(subject, groups),
     )
@@ -112,8 +113,8 @@ def _missed(subject: Subject, ahead: Outlook, drive: Drive) -> Symptom:
             *subject.group_paths(ahead.partners),
         ),
         message=(
-            f"forces.{name} carries {listed(groups)} towards {where} past {listed(partners)}, which is all that it may "
-            "touch: it falls for ever"
+            f"forces.{name} carries {listed(groups)} towards {where} past {listed(partners)}, which is all that "
+            f"{verb(groups, 'it', 'they')} may touch: nothing ever stops {verb(groups, 'it', 'them')}"
         ),
         remedy={"groups": {groups[0]: {"centre": _over(subject, ahead)}}},
     )

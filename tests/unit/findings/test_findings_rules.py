@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from support.examined import found, warnings
 
-HEAD = "atomsim: 1\ntime_step: 0.01\nrounds: 100\ngroups:\n"
+HEAD = "atomsim: 1\ntime_step: 0.01\nrounds: 900\ngroups:\n"
 
 CRATES = (
     HEAD
@@ -235,15 +235,15 @@ def test_a_force_on_some_held_atoms_acts_on_the_others() -> None:
     [
         ("{kind: push, acts_on: upper, impulse: [0, 0, 0]}", "`impulse` is zero, so this force does nothing"),
         ("{kind: gravity, acts_on: upper, impulse: [0, 0, -0.0]}", "`impulse` is zero, so this force does nothing"),
-        ("{kind: push, acts_on: upper, impulse: [1, 0, 0], from_round: 100}",
-         "this begins in round 100, when the run is over: its last round is 99"),
-        ("{kind: push, acts_on: upper, impulse: [1, 0, 0], from_round: 99}", None),
+        ("{kind: push, acts_on: upper, impulse: [1, 0, 0], from_round: 900}",
+         "this begins in round 900, when the run is over: its last round is 899"),
+        ("{kind: push, acts_on: upper, impulse: [1, 0, 0], from_round: 899}", None),
         ("{kind: oscillate, acts_on: upper, impulse: [0, 0, 0], period: 9}",
          "`impulse` is zero, so this force does nothing"),
         ("{kind: oscillate, acts_on: upper, impulse: [1, 0, 0], period: 0.5}",
          "sin(2π·round/0.5) is below 0.01 in every round of the run"),
-        ("{kind: oscillate, acts_on: upper, impulse: [1, 0, 0], period: 1e6, phase: 3.14}",
-         "sin(2π·round/1e+06 + 3.14) is below 0.01 in every round of the run"),
+        ("{kind: oscillate, acts_on: upper, impulse: [1, 0, 0], period: 1e7, phase: 3.14}",
+         "sin(2π·round/1e+07 + 3.14) is below 0.01 in every round of the run"),
         ("{kind: oscillate, acts_on: upper, impulse: [1, 0, 0], period: 9}", None),
         ("{kind: push, acts_on: upper, towards: floor, magnitude: 0}",
          "`magnitude` is zero, so this force does nothing"),
@@ -298,7 +298,7 @@ def test_collisions_of_what_is_held() -> None:
 
 
 def test_rounds_to_show_that_are_never_run() -> None:
-    (note,) = found(CRATES + "render: {rounds: [0, 50, 200, 300]}\n")
-    assert str(note) == ("scene.yaml:15: note: there is no round 200 to show; the run ends at 100 [no-such-round]")
-    assert (note.rounds, note.remedy) == ((200, 300), "render:\n  rounds: [0, 50]")
-    assert found(CRATES + "render: {rounds: [0, 100]}\n") == []
+    (note,) = found(CRATES + "render: {rounds: [0, 50, 2000, 3000]}\n")
+    assert str(note) == ("scene.yaml:15: note: there is no round 2000 to show; the run ends at 900 [no-such-round]")
+    assert (note.rounds, note.remedy) == ((2000, 3000), "render:\n  rounds: [0, 50]")
+    assert found(CRATES + "render: {rounds: [0, 900]}\n") == []
