@@ -9,7 +9,7 @@ from itertools import chain, count
 import numpy as np
 from numpy.typing import NDArray
 
-from atomsim.compiler.selections import Selections, lay_out
+from atomsim.compiler.selections import GroupLayout, Selections, lay_out
 from atomsim.compiler.shapes import place
 from atomsim.core.diagnosis.bodies import bodies
 from atomsim.core.diagnosis.flight import Mover, TooManyMoversError, movers
@@ -59,6 +59,12 @@ class Subject:
         return np.repeat(np.arange(len(self.model.groups)), [span.stop - span.start for span in self.model.groups])
 
     @cached_property
+    def part(self) -> Indices:
+        """The number of every atom's group and copy, (n_atoms,)."""
+        sizes = [layout.n_atoms_each for layout in self.layouts.values() for _ in range(layout.n_copies)]
+        return np.repeat(np.arange(len(sizes)), sizes)
+
+    @cached_property
     def body(self) -> Indices:
         """The body of every atom, named by the first of its atoms, (n_atoms,)."""
         return bodies(((table.first, table.second) for table in self.model.bonds), self.model.n_atoms)
@@ -83,7 +89,12 @@ class Subject:
     @cached_property
     def selections(self) -> Selections:
         """What selections name."""
-        return Selections(lay_out(self.scene), self.model.n_atoms)
+        return Selections(self.layouts, self.model.n_atoms)
+
+    @cached_property
+    def layouts(self) -> dict[str, GroupLayout]:
+        """Where the atoms of each group are, copy after copy."""
+        return lay_out(self.scene)
 
     @cached_property
     def placed(self) -> Floats:

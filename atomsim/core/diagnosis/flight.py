@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import assert_never
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from atomsim.core.model import (
     State,
     TetherForce,
     TorqueForce,
+    TowardsForce,
 )
 
 MOST_MOVERS = 200
@@ -185,7 +187,7 @@ def movers(model: Model, state: State, body: Indices, group: Indices) -> list[Mo
     """
     is_unpredictable = np.zeros(model.n_atoms, dtype=bool)
     for force in model.forces:
-        if isinstance(force, (HoldForce, TetherForce)) or (isinstance(force, OscillateForce) and any(force.impulse)):
+        if not _is_predictable(force):
             is_unpredictable[force.atoms] = True
     is_free = ~np.isin(body, body[is_unpredictable])
     size = np.bincount(body, minlength=model.n_atoms)
@@ -200,6 +202,21 @@ def movers(model: Model, state: State, body: Indices, group: Indices) -> list[Mo
     order = np.argsort(number, kind="stable")
     parts = np.split(free[order], np.cumsum(np.bincount(number, minlength=n_movers))[:-1])
     return [_mover(model, state, atoms, alike, bool(is_loose[atoms[0]])) for atoms in parts if atoms.size]
+
+
+def _is_predictable(force: ExternalForce) -> bool:
+    """Return whether the flight of a body on which a force acts is known: a torque leaves the centroid alone."""
+    match force:
+        case DampingForce() | PushForce() | TorqueForce():
+            return True
+        case OscillateForce():
+            return not any(force.impulse)
+        case TowardsForce():
+            return force.magnitude == 0.0
+        case TetherForce() | HoldForce():
+            return False
+        case _:
+            assert_never(force)
 
 
 def _alike(model: Model, state: State, group: Indices) -> Indices:

@@ -108,6 +108,7 @@ def examine(loaded: LoadedScene, model: Model, state: State) -> Examination:
                     found.append(finding(code, "before", symptom, source))  # noqa: PERF401  # what comes before a stop is kept
             except (TooLargeError, MemoryError):
                 skipped.append(code)
+    found = list(dict.fromkeys(found))  # of copies the same may be found again and again
     codes = ONLY_BEFORE - set(skipped)
     kept = without_consequences(without_silenced(found, scene))
     kept += needless_silences(found, scene, source, "before", codes)

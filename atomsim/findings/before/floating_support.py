@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from atomsim.core.model import OscillateForce, PushForce, TetherForce, TorqueForce
+from atomsim.core.model import OscillateForce, PushForce, TetherForce, TorqueForce, TowardsForce
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
 from atomsim.findings.words import listed, verb
@@ -16,7 +16,7 @@ def floating_support(subject: Subject) -> Iterator[Symptom]:
     """Find bodies that something falls onto, and that nothing holds, pushes or tethers; damping holds nothing."""
     is_acted_on = subject.is_held.copy()
     for force in subject.model.forces:
-        if isinstance(force, (OscillateForce, PushForce, TetherForce, TorqueForce)):
+        if isinstance(force, (OscillateForce, PushForce, TetherForce, TorqueForce, TowardsForce)):
             is_acted_on[force.atoms] = True
     carried = np.isin(subject.body, subject.body[is_acted_on])
     told = set()

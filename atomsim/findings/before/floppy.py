@@ -76,7 +76,7 @@ def loose_bodies(subject: Subject, *, joints: bool, with_mode: bool = False) -> 
     if model.n_atoms > MOST_FOLLOWED or names.size > MOST_BODIES:
         raise TooLargeError
     first, second = np.divmod(subject.bond_keys, model.n_atoms)
-    is_open = False
+    is_open, told = False, set()
     for name in names.tolist():
         atoms = np.flatnonzero(subject.body == name)
         groups = tuple(distinct([subject.group[atoms]]).tolist())
@@ -90,7 +90,8 @@ def loose_bodies(subject: Subject, *, joints: bool, with_mode: bool = False) -> 
             found = joint_rigidity(position, part, bars, is_held, with_mode=with_mode)
         else:
             found = rigidity(position, bars, is_held, with_mode=with_mode)
-        if found.n_modes:
+        if found.n_modes and (alike := (groups, atoms.size, found.n_modes)) not in told:  # copies are told once
+            told.add(alike)
             yield Loose(atoms, groups, bars, found)
         is_open |= not found.is_exact and not found.n_modes
     if is_open:

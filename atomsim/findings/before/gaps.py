@@ -17,24 +17,24 @@ MOST_ATOMS = 20_000
 """No more atoms are tried for a better threshold."""
 
 
-def places(subject: Subject, rule: DistanceThresholdBonds, expression: str) -> Floats:
-    """Return where the atoms of a selection are, as a rule measures distances, (3, n_selected)."""
+def places(subject: Subject, rule: DistanceThresholdBonds, expression: str, atoms: Indices) -> Floats:
+    """Return where the atoms of one copy of a selection are, as a rule measures distances, (3, n_atoms)."""
     steps = subject.selections.grid_places(expression) if rule.metric == "grid" else None
     if steps is None:
-        return subject.placed[subject.selections.atoms((expression,))].T
+        return subject.placed[atoms].T
     position = np.zeros((3, steps.shape[0]))
     position[: steps.shape[1]] = steps.T
     return position
 
 
-def widest_gap(position: Floats, threshold: float) -> float | None:
+def widest_gap(position: Floats, rule: DistanceThresholdBonds) -> float | None:
     """Return the widest gap that bonds have to bridge for all atoms to be one body, or None where it is far wider.
 
     Args:
-        position: places of atoms that a threshold does not make one body, (3, n_atoms).
-        threshold: that threshold.
+        position: places of atoms that the rule does not make one body, (3, n_atoms).
+        rule: the rule.
     """
-    n_atoms = position.shape[1]
+    n_atoms, threshold = position.shape[1], rule.threshold
     for factor in FARTHER if n_atoms <= MOST_ATOMS else ():
         first, second = near_pairs(position, None, factor * threshold)
         distance = np.sqrt(pair_squares(position, first, second))

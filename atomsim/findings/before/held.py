@@ -6,57 +6,51 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from atomsim.core.model import ExternalForce, HoldForce
+from atomsim.core.forces import acting
+from atomsim.core.model import HoldForce, Indices
 from atomsim.core.pairs.collisions import involved_atoms
-from atomsim.findings.finding import Symptom
+from atomsim.core.pairs.near import distinct
+from atomsim.findings.finding import Remedy, Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import listed
+from atomsim.findings.words import listed, verb
+from atomsim.scene.language.selection import parse_selection
 
 
 def force_on_held(subject: Subject) -> Iterator[Symptom]:
     """Find forces all of whose atoms are held; a hold that takes away several forces is the one to look at."""
-    dead = [
-        force
-        for force in subject.model.forces
-        if not isinstance(force, HoldForce) and subject.is_held[force.atoms].all()
-    ]
-    by_holds: dict[tuple[str, ...], list[ExternalForce]] = {}
-    for force in dead:
-        by_holds.setdefault(_holds_of(subject, force), []).append(force)
-    for holds, forces in by_holds.items():
-        names = [f"forces.{force.origin.name}" for force in forces]
-        atoms = np.concatenate([force.atoms for force in forces])
-        plural = len(forces) > 1
+    acted_on: dict[str, list[Indices]] = {}
+    for force in acting(subject.model.forces):  # one that goes copy by copy is several
+        acted_on.setdefault(force.origin.name, []).append(force.atoms)
+    by_holds: dict[tuple[str, ...], dict[str, Indices]] = {}
+    for name, parts in acted_on.items():
+        atoms = distinct(parts)
+        if subject.is_held[atoms].all():
+            by_holds.setdefault(_holds_of(subject, atoms), {})[name] = atoms
+    for holds, dead in by_holds.items():
+        names, atoms = list(dead), distinct(list(dead.values()))
+        groups = subject.groups_of(atoms)
         yield Symptom(
-            at=("forces", holds[0] if plural else forces[0].origin.name),
-            names=(
-                *(("forces", force.origin.name) for force in forces),
-                *(("forces", hold) for hold in holds),
-                *subject.group_paths(atoms),
-            ),
+            at=("forces", holds[0] if len(names) > 1 else names[0]),
+            names=(*(("forces", name) for name in (*names, *holds)), *subject.group_paths(atoms)),
             message=(
-                f"{listed(names)} {'act' if plural else 'acts'} on atoms of {listed(subject.groups_of(atoms))} only, "
-                f"which forces.{holds[0]} holds: nothing comes of {'them' if plural else 'it'}"
+                f"{listed([f'forces.{name}' for name in names])} {verb(names, 'acts', 'act')} on atoms of "
+                f"{listed(groups)} only, which forces.{holds[0]} holds: nothing comes of {verb(names, 'it', 'them')}"
             ),
-            remedy=_remedy(subject, holds[0], forces),
+            remedy=_remedy(subject, holds[0], names, groups),
         )
 
 
-def _holds_of(subject: Subject, force: ExternalForce) -> tuple[str, ...]:
-    """Return the names of the forces that hold atoms of a force, in order."""
-    return tuple(
-        hold.origin.name
-        for hold in subject.model.forces
-        if isinstance(hold, HoldForce) and np.isin(force.atoms, hold.atoms).any()
-    )
+def _holds_of(subject: Subject, atoms: Indices) -> tuple[str, ...]:
+    """Return the names of the forces that hold some of the atoms, in order."""
+    holds = (hold for hold in subject.model.forces if isinstance(hold, HoldForce))
+    return tuple(dict.fromkeys(hold.origin.name for hold in holds if np.isin(atoms, hold.atoms).any()))
 
 
-def _remedy(subject: Subject, hold: str, forces: list[ExternalForce]) -> dict[str, object]:
+def _remedy(subject: Subject, hold: str, forces: list[str], groups: list[str]) -> Remedy:
     """Hold what is left when the groups of these forces are let go, or, of a single force, leave it out."""
     if len(forces) == 1:
-        return {"forces": {forces[0].origin.name: None}}
-    freed = {group for force in forces for group in subject.groups_of(force.atoms)}
-    kept = [part for part in subject.scene.forces[hold].acts_on if part.partition("[")[0].strip() not in freed]
+        return {"forces": {forces[0]: None}}
+    kept = [part for part in subject.scene.forces[hold].acts_on if parse_selection(part).group not in groups]
     return {"forces": {hold: {"acts_on": kept} if kept else None}}
 
 

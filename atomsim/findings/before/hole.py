@@ -86,7 +86,8 @@ def _is_backed(subject: Subject, span: GroupSpan, plane: PlaneGroup, group: Grou
     others = others[(others < span.start) | (others >= span.stop)]
     if not others.size:
         return False
-    grid = subject.state.position[span.start : span.stop].reshape(plane.counts[1], plane.counts[0], 3)
+    one = subject.state.position[span.start : span.start + subject.layouts[span.name].n_atoms_each]
+    grid = one.reshape(plane.counts[1], plane.counts[0], 3)
     middle = (0.25 * (grid[:-1, :-1] + grid[1:, :-1] + grid[:-1, 1:] + grid[1:, 1:])).reshape(-1, 3)
     normal = np.cross(grid[0, 1] - grid[0, 0], grid[1, 0] - grid[0, 0])
     normal = normal / np.sqrt(normal @ normal)

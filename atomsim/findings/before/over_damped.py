@@ -11,7 +11,7 @@ from atomsim.core.model import DampingForce
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
 from atomsim.findings.words import listed, verb
-from atomsim.scene.language import Gravity
+from atomsim.scene.language.forces import Gravity
 
 SHORT_WAY = 1.0
 """Who gets less far than this in a run [length] stands still."""

@@ -24,7 +24,8 @@ def rule_misses_group(subject: Subject) -> Iterator[Symptom]:
             if atoms.size > 1 and not (np.isin(table.first, atoms) & np.isin(table.second, atoms)).any():
                 gap = None
                 if isinstance(rule, DistanceThresholdBonds):
-                    gap = widest_gap(places(subject, rule, expression), rule.threshold)
+                    one = subject.selections.by_copy((expression,))[0]
+                    gap = widest_gap(places(subject, rule, expression, one), rule)
                 yield _symptom(subject, name, rule, expression, gap)
         for side, others in _sides(rule):
             for expression in side:

@@ -8,11 +8,11 @@ import numpy as np
 
 from atomsim.core.diagnosis.flight import Drive, Flight, Mover
 from atomsim.core.diagnosis.outlook import CONTACT, Outlook
-from atomsim.core.model import Floats, OscillateForce, PushForce, TetherForce, TorqueForce
+from atomsim.core.model import Floats, OscillateForce, PushForce, TetherForce, TorqueForce, TowardsForce
 from atomsim.findings.finding import Remedy, Symptom
 from atomsim.findings.subject import Subject
 from atomsim.findings.words import direction_in_words, listed, verb
-from atomsim.scene.language import Gravity
+from atomsim.scene.language.forces import Gravity
 
 FARTHEST_OUT = 2.0
 """A body that may touch nothing may fall so far out of the scene [length]."""
@@ -60,7 +60,7 @@ def _may_be_caught(subject: Subject, ahead: Outlook) -> bool:
     driven = np.zeros(subject.model.n_atoms, dtype=bool)
     for force in subject.model.forces:
         is_push = isinstance(force, PushForce) and not isinstance(subject.scene.forces[force.origin.name], Gravity)
-        if is_push or isinstance(force, (OscillateForce, TetherForce, TorqueForce)):
+        if is_push or isinstance(force, (OscillateForce, TetherForce, TorqueForce, TowardsForce)):
             driven[force.atoms] = True
     driven &= ~subject.is_held
     bodies = subject.body[subject.surroundings.resting(ahead.partners)]
