@@ -101,6 +101,8 @@ class Simulation:
     def replace_model(self, model: Model) -> None:
         """Go on from the present state under other laws: another time step, other forces, other bonds.
 
+        Rounds count on, forces from outside stay, and a frame's `time` is its round times the time step of now.
+
         Args:
             model: of the same atoms, remembering the same.
 

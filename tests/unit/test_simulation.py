@@ -86,7 +86,9 @@ def test_forces_from_outside_act_in_every_round_until_they_are_set_again() -> No
     push = np.array([[0.5, 0, 0], [0, 0, -2]])
     simulation.set_forces(push)
     push[:] = 99.0  # it was copied
-    simulation.step(4)
+    simulation.step(0)
+    simulation.step(1)
+    simulation.step(3, lambda _: None)
     assert simulation.state.velocity.tolist() == [[2, 0, 0], [0, 0, -8]]
     simulation.set_forces(np.array([[0, 1, 0], [0, 0, 0]]))
     simulation.step(2)
