@@ -177,7 +177,7 @@ LONG = {
 def test_whatever_may_take_long_says_how_far_it_is(cli, monkeypatch, command):
     assert cli("run", "scenes/rods.yaml", "--rounds", "20", "-q").code == 0
     if "recover" in command:
-        with Trajectory("out.h5") as trajectory, Recorder("killed.h5", trajectory.header) as recorder:
+        with Trajectory("out.h5") as trajectory, Recorder.begin("killed.h5", trajectory.header) as recorder:
             for frame in trajectory:
                 recorder.append(frame)
     if "check" in command:
