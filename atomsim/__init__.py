@@ -94,6 +94,11 @@ def compile(loaded: LoadedScene) -> tuple[Model, State]:
     return compile_scene(loaded)
 
 
+def __dir__() -> list[str]:
+    """List what is public, whether or not it has been used yet: notebooks complete these names."""
+    return [*__all__, "__version__"]
+
+
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'atomsim' has no attribute '{name}'")

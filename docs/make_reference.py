@@ -152,6 +152,14 @@ YAML to lay over the scene. [Findings](findings.md) explains every code. With `-
 """,
 }
 
+COMPLETION = """\
+## Completion
+
+`atomsim --install-completion` teaches bash, zsh or fish, whichever it is typed into, to complete commands, options, the
+names of backends and of the scenes at hand; terminals opened afterwards have it. `atomsim --show-completion` prints the
+script, to be kept where one likes.
+"""
+
 EXIT_CODES = """\
 ## Exit codes
 
@@ -287,6 +295,7 @@ def _commands() -> Iterator[str]:
         yield _parameters(command)
         if name in NOTES:
             yield NOTES[name]
+    yield COMPLETION
     yield EXIT_CODES.rstrip("\n") + "\n"
 
 

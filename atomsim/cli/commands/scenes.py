@@ -12,6 +12,14 @@ from atomsim.cli.remedies import command
 from atomsim.cli.terminal.output import say
 from atomsim.cli.voice import explained
 
+
+def names() -> list[str]:
+    """Return what can be copied."""
+    from atomsim.tasks.offered import offers
+
+    return [offer.name for offer in offers()]
+
+
 HEADINGS = {"paper": "Scenes of the paper", "recipe": "Recipes"}
 
 
@@ -48,7 +56,10 @@ def scenes() -> None:
     """
 )
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="One of those that `atomsim scenes` lists.")],
+    name: Annotated[
+        str,
+        typer.Argument(metavar="NAME", autocompletion=names, help="One of those that `atomsim scenes` lists."),
+    ],
     output: Annotated[Path | None, output("SCENE", "The file to write.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
 ) -> None:
