@@ -50,6 +50,29 @@ def picture(cli, *arguments: str) -> np.ndarray:
     return pixels
 
 
+def test_frames_do_not_replace_what_atomsim_did_not_draw(cli, record):
+    record("out.h5")
+    frames = ("render", "out.h5", "--frames", "film", "--size", "32x24", "--rounds", "0,12")
+    Path("film").mkdir()
+    Path("film/round-12.png").write_text("mine")
+    Path("film/holiday.png").write_text("mine, too")
+    result = cli(*frames)
+    assert (result.code, result.out) == (2, "")
+    assert result.err == "film/round-12.png exists and atomsim did not draw it; add --force to replace it\n"
+    assert Path("film/round-12.png").read_text() == "mine"
+    assert cli(*frames, "--force").code == 0
+    assert cli(*frames).code == 0
+    assert Path("film/holiday.png").read_text() == "mine, too"
+
+
+def test_frames_and_a_strip_are_two_commands(cli, record):
+    record("out.h5")
+    result = cli("render", "out.h5", "--frames", "film", "-o", "strip.png")
+    assert (result.code, result.out) == (2, "")
+    assert result.err == "--frames writes pictures into its folder, and no strip; -o does not go with it\n"
+    assert not Path("film").exists()
+
+
 def test_the_strip_is_spread_evenly_over_the_frames_where_nobody_chose(cli, record):
     record("out.h5")
     assert words(cli, "out.h5") == ["bricks.yaml", *(f"round {number}" for number in (0, 8, 16, 24, 32, 42))]

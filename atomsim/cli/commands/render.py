@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, TypeVar
 
@@ -55,7 +56,6 @@ def render(
     force: Annotated[bool, typer.Option("--force", help="Replace a file that atomsim did not draw.")] = False,
 ) -> None:
     from atomsim.cli.terminal.progress import Progress
-    from atomsim.drawing.files import is_our_picture
     from atomsim.tasks import render as pictures
 
     if frames is not None and output is not None:
@@ -63,6 +63,8 @@ def render(
     angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
     pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
     if frames is not None:
+        if not force:
+            _require_own(frames.glob("*round-*.png"))
         with Progress("picture") as progress:
             written = pictures.render_frames(
                 trajectories,
@@ -77,9 +79,8 @@ def render(
         return
     first = trajectories[0]
     picture = output or (first.with_suffix(".png") if first.name else first)  # a folder is told of when it is read
-    is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
-    if not (is_free or force or (picture.is_file() and is_our_picture(picture))):
-        raise InputError(f"{picture} exists and atomsim did not draw it", Remedy("replace"))
+    if not force:
+        _require_own([picture])
     with Progress("picture") as progress:
         pictures.render(
             trajectories,
@@ -91,6 +92,16 @@ def render(
             report=progress.report,
         )
     say(str(picture))
+
+
+def _require_own(pictures: Iterable[Path]) -> None:
+    """Refuse to replace what atomsim did not draw."""
+    from atomsim.drawing.files import is_our_picture
+
+    for picture in pictures:
+        is_free = not picture.exists() or picture.is_dir()  # a folder is told of when it is written
+        if not (is_free or (picture.is_file() and is_our_picture(picture))):
+            raise InputError(f"{picture} exists and atomsim did not draw it", Remedy("replace"))
 
 
 def _notice(notice: Notice) -> None:
