@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
@@ -33,6 +33,19 @@ def whole_number(option: str, least: int) -> Callable[[str], int]:
         if value is None or not (math.isfinite(value) and value == int(value) and value >= least):
             raise InputError(f"{option} needs a whole number of {least} or more{_meant(text)}")
         return int(value)
+
+    return read
+
+
+def one_of(option: str, choices: Sequence[str]) -> Callable[[str], str]:
+    """Return what reads the value of an option as one of several words."""
+
+    def read(text: str) -> str:
+        from atomsim.scene.mistakes.wording import either, readable
+
+        if text.lower() not in choices:
+            raise InputError(f"{option} needs {either(choices)} (got {readable(text)})")
+        return text.lower()
 
     return read
 
@@ -78,6 +91,7 @@ Backend: TypeAlias = Annotated[
     str,
     typer.Option(
         metavar="|".join(NAMES),
+        parser=one_of("--backend", NAMES),
         help="What computes; the trajectory is the same to the last bit.",
         autocompletion=lambda: NAMES,
     ),

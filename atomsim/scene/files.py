@@ -182,6 +182,10 @@ def _reason(error: OSError | ValueError, name: str) -> str:
 def _no_such_file(name: str, written: str, got: str = "") -> str:
     """Say that there is no such file, and which one may have been meant, the way it was written."""
     path = Path(name)
+    otherwise = [other for other in (name.replace("\\", "/"), _expanded(name)) if other != name]
+    for other in otherwise:  # a path of Windows, or a `~` in quotes, which shells leave alone
+        if not got and Path(other).is_file():
+            return f"there is no such file; did you mean `{printable(other)}`?"
     try:
         neighbours = {
             entry.stem: entry.name for entry in path.parent.iterdir() if entry.suffix in (".yaml", ".yml", ".json")
@@ -191,6 +195,10 @@ def _no_such_file(name: str, written: str, got: str = "") -> str:
     close = suggestion(path.stem, neighbours)
     remedy = f"; did you mean `{printable(str(Path(written).with_name(neighbours[close])))}`?" if close else ""
     return f"there is no such file{got}{remedy}"
+
+
+def _expanded(name: str) -> str:
+    return os.path.expanduser(name)  # noqa: PTH111 - unlike that of Path, it has no error
 
 
 def _unreadable(name: str, message: str, *remedies: Remedy) -> SceneError:

@@ -13,9 +13,6 @@ from pathlib import Path
 import pytest
 from support.process import clean_environment, finish
 
-from atomsim.cli.options import BACKENDS
-from atomsim.core import backend
-
 BESIDE_PYTHON = str(Path(sys.executable).parent)
 
 ASKED = {
@@ -33,10 +30,6 @@ EXPECTED = [
     (("atomsim", "golden", "check", "--backend", "num"), {"numpy", "numba"}),
     (("atomsim", "new", "rod"), {"rods", "rod-thread"}),
 ]
-
-
-def test_the_backends_are_those_of_the_core():
-    assert BACKENDS == backend.BACKENDS
 
 
 @pytest.mark.parametrize("shell", ASKED)
