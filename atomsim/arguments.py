@@ -110,6 +110,32 @@ def function(name: str, value: object) -> None:
         raise refused(name, "a function", value)
 
 
+def flag(name: str, value: object) -> bool:
+    """Return whether something is wished: a text that says no would count as yes.
+
+    Raises:
+        InputError: it is neither true nor false.
+    """
+    if not isinstance(value, bool):
+        raise refused(name, "True or False", value)
+    return value
+
+
+def texts(name: str, value: Any, needs: str) -> tuple[str, ...]:
+    """Return texts, which may be none: not a single one, which would be taken letter by letter.
+
+    Raises:
+        InputError: they are no texts, or do not come one after the other.
+    """
+    try:
+        found = () if isinstance(value, str | bytes) else tuple(value)
+    except TypeError:
+        found = (None,)
+    if isinstance(value, str | bytes) or not all(isinstance(text, str) for text in found):
+        raise refused(name, needs, value)
+    return found
+
+
 def instance(name: str, value: object, kind: type[Kind], needs: str) -> Kind:
     """Return a value that is of a kind.
 

@@ -44,6 +44,9 @@ def simulate(
     """
     arguments.instance("model", model, Model, arguments.MODEL)
     arguments.instance("state", state, State, arguments.STATE)
+    if first is not None:
+        arguments.instance("first", first, State, arguments.STATE)
+    arguments.function("report", report)
     rounds = arguments.whole("rounds", rounds, least=0)
     record_every = arguments.whole("record_every", record_every)
     if not callable(backend):

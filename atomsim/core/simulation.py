@@ -131,6 +131,7 @@ class Simulation:
         Whatever is raised, also by the report or by Ctrl-C, the simulation stands where it stood before the step.
         """
         n_rounds = arguments.whole("n_rounds", n_rounds, least=0)
+        arguments.function("report", report)
         before = self._state
         try:
             n_done, goes_on = self._pace.advance(self._stepper, before.round_index, n_rounds, report)

@@ -9,6 +9,7 @@ from typing import Any, BinaryIO
 
 from pydantic import ValidationError
 
+from atomsim import arguments
 from atomsim.errors import SceneError
 from atomsim.scene.files import read_scene_file, read_scene_stream, read_scene_text
 from atomsim.scene.language import Scene
@@ -42,6 +43,8 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> LoadedS
     Raises:
         SceneError: everything that is wrong with the scene, in the order of the file.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise arguments.refused("path", "the name of a file", path)
     name = os.fspath(path)
     return _loaded(read_scene_file(name), name, overrides)
 
@@ -77,12 +80,14 @@ def loads(text: str, name: str = "<scene>", overrides: Iterable[str] = ()) -> Lo
     Raises:
         SceneError: everything that is wrong with the scene, in the order of the text.
     """
+    arguments.instance("text", text, str, "a scene as text")
+    arguments.instance("name", name, str, "a text")
     return _loaded(read_scene_text(text, name), name, overrides)
 
 
 def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:
     """Validate a merged tree."""
-    overrides = tuple(overrides)
+    overrides = arguments.texts("overrides", overrides, 'texts such as ["rounds=5"]')
     root = override(root, overrides)
     data = root.plain()
     source = Source(name=name, overrides=overrides, marks=Places(root))

@@ -89,6 +89,10 @@ def run(
     """
     arguments.instance("scene", scene, LoadedScene, arguments.LOADED_SCENE)
     path = arguments.path("path", path)
+    for name, value in (("replace", replace), ("compress", compress)):
+        arguments.flag(name, value)
+    for name, hearer in (("report", report), ("warn", warn)):
+        arguments.function(name, hearer)
     rounds = scene.scene.rounds if rounds is None else arguments.whole("rounds", rounds)
     check_target(path, replace=replace)  # before anything that takes long
     prepared = prepare(scene, rounds)
@@ -149,6 +153,9 @@ def resume(
         rounds = arguments.whole("rounds", rounds)
     if scene is not None:
         arguments.instance("scene", scene, LoadedScene, arguments.LOADED_SCENE)
+    arguments.flag("replace", replace)
+    for name, hearer in (("report", report), ("warn", warn)):
+        arguments.function(name, hearer)
     with StoppedRun(path, rounds, replace=replace) as stopped:
         header = stopped.header
         if stopped.is_complete:
