@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import pty
 import re
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
 import pytest
-from support.process import finish, heed, python, start
+from support.process import COMMAND, clean_environment, finish, heed, python, start
 
 from atomsim.trajectory import Trajectory, journal_path
 
@@ -75,6 +78,32 @@ def test_a_second_signal_does_not_wait(tmp_path):
     with Trajectory(tmp_path / "out.h5") as trajectory:
         assert trajectory.from_journal
         assert trajectory.rounds.tolist() == [0, 10, 20, 30]
+
+
+def test_a_terminal_that_closes_may_say_so_twice(tmp_path):
+    """Once by itself and once by its shell: nobody is impatient."""
+    twice = SECOND_SIGNAL.replace("signal.SIGTERM", "signal.SIGHUP").replace("signal.SIGINT", "signal.SIGHUP")
+    done = finish(*LONG_RUN, program=python(twice), cwd=tmp_path, before=heed)
+    assert done.returncode == 129
+    assert done.stderr.startswith("stopped after round ")
+    with Trajectory(tmp_path / "out.h5") as trajectory:
+        assert (trajectory.end.kind, trajectory.from_journal) == ("interrupted", False)
+
+
+def test_a_terminal_that_is_closed_in_earnest(tmp_path):
+    """The kernel tells the run, which can no longer say anything, and still writes what there is."""
+    process, terminal = pty.fork()
+    if process == 0:
+        os.chdir(tmp_path)
+        heed()
+        os.execve(sys.executable, [*COMMAND, *map(str, LONG_RUN)], clean_environment())
+    journal = journal_path(tmp_path / "out.h5")
+    wait_for(lambda: journal.exists() and journal.stat().st_size > 80_000)  # a second block of frames
+    os.close(terminal)
+    _, status = os.waitpid(process, 0)
+    assert os.waitstatus_to_exitcode(status) == 129
+    with Trajectory(tmp_path / "out.h5") as trajectory:
+        assert (trajectory.end.kind, trajectory.from_journal) == ("interrupted", False)
 
 
 READY = "import sys; from atomsim.cli import main; print('ready', flush=True); main()"
