@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from atomsim.cli.terminal.output import tell
-from atomsim.errors import InputError
+from atomsim.errors import InputError, SceneError
 
 if TYPE_CHECKING:
     from atomsim.scene import LoadedScene
@@ -26,7 +26,12 @@ def named_scene(path: Path, settings: Sequence[str] | None = None) -> LoadedScen
     from atomsim.scene import load, load_stream
 
     if path != STANDARD_INPUT:
-        return load(path, settings or ())
+        try:
+            return load(path, settings or ())
+        except SceneError as error:
+            from atomsim.tasks.begin import with_time_step  # only a mistake needs it
+
+            raise with_time_step(error, lambda more: load(path, (*(settings or ()), *more))) from None
     if sys.stdin is not None and sys.stdin.isatty():
         tell("reading a scene from standard input; Ctrl-D ends it")
     stream = io.BytesIO() if sys.stdin is None else sys.stdin.buffer

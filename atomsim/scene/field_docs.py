@@ -62,6 +62,12 @@ def default(declaration: type[Declaration], key: str) -> Schema:
     return {"default": json.loads(json.dumps(field.default))}
 
 
+def examples(declaration: type[Declaration], key: str) -> Schema:
+    """Return what a schema says of values to begin with; nothing if there are none."""
+    found = declaration.fields_by_key()[key].examples
+    return {"examples": found} if found else {}
+
+
 def _default_in_words(declaration: type[Declaration], key: str) -> str | None:
     """Return a default as the user would write it, empty if nothing stands for it."""
     if declaration.fields_by_key()[key].is_required():

@@ -8,11 +8,14 @@ from collections.abc import Callable
 from typing import Any
 
 from atomsim.scene.declarations import declarations
-from atomsim.scene.field_docs import about, default, descriptions
+from atomsim.scene.field_docs import about, default, descriptions, examples
 from atomsim.scene.language import Declaration
 from atomsim.scene.value_schema import Schema, value_schema
 
 _SCHEMA = "Where an editor finds this schema, in a scene that is written as JSON; atomsim does not read it."
+_ABOUT = ("description", "default", "examples", "title")
+"""What a schema says about a value, whatever the value may be."""
+
 _EXTENDS = "The scene file to lay this one over: mappings merge by key, everything else replaces, null deletes."
 
 
@@ -51,7 +54,10 @@ def _definition(declaration: type[Declaration]) -> Schema:
         "description": about(declaration),
         "type": "object",
         "properties": {
-            key: value_schema(declaration, key) | default(declaration, key) | {"description": described[key]}
+            key: value_schema(declaration, key)
+            | default(declaration, key)
+            | examples(declaration, key)
+            | {"description": described[key]}
             for key in fields
         },
         "required": [key for key, field in fields.items() if field.is_required()],
@@ -74,7 +80,7 @@ def _nullable(value: Schema) -> Schema:
         if {"type": "null"} not in alternatives:
             alternatives.append({"type": "null"})
         return value
-    outside: Schema = {key: value.pop(key) for key in ("description", "default", "title") if key in value}
+    outside: Schema = {key: value.pop(key) for key in _ABOUT if key in value}
     return {"anyOf": [value, {"type": "null"}], **outside}
 
 

@@ -313,3 +313,18 @@ def test_what_was_added_to_a_trajectory_is_not_lost_without_a_word(cli):
     assert Path("out.h5").read_bytes() == before
     assert cli("run", "--resume", "out.h5", "--rounds", "40", "-q", "--force").code == 0
     assert cli("show", "out.h5").code == 0
+
+
+def test_a_scene_without_a_time_step_is_told_one_that_it_allows(cli):
+    Path("rod.yaml").write_text(
+        "atomsim: 1\nrounds: 10\ngroups:\n  rod: {shape: string, count: 70, step: [0.25, 0, 0]}\n"
+        "bonds:\n  rod: {within: rod, rule: all-pairs}\n"
+    )
+    for command in ("check", "run"):
+        result = cli(command, "rod.yaml")
+        assert (result.code, result.out) == (2, "")
+        assert result.err == (
+            "rod.yaml:1:1: time_step: missing: τ, by which velocities move positions in each round [time]; "
+            "this scene is stable below 0.0286: begin with `time_step: 0.01`\n"
+        )
+    assert cli("run", "rod.yaml", "--set", "time_step=0.01").code == 0

@@ -15,7 +15,7 @@ from pydantic import Field, create_model
 from support.process import finish
 
 from atomsim.errors import Mark, SceneError
-from atomsim.scene.declarations import declaration_at, declarations, sections
+from atomsim.scene.declarations import declaration_at, declarations, discriminator, sections, selecting_keys
 from atomsim.scene.field_docs import descriptions, field_docs
 from atomsim.scene.language import (
     Camera,
@@ -179,6 +179,26 @@ def test_every_field_of_every_declaration_is_described() -> None:
     for name, declaration in written.items():
         assert set(table[name]) == set(declaration.fields_by_key())
         assert all(doc.description.endswith(".") and doc.type for doc in table[name].values()), name
+
+
+def test_what_must_be_written_says_a_value_to_begin_with() -> None:
+    """All but the words that choose a declaration, selections, for which the groups are named, and reasons."""
+    begin = {}
+    for name, declaration in declarations().items():
+        chosen_by = discriminator(declaration)
+        word = {} if chosen_by is None else dict([chosen_by])
+        required = [key for key, field in declaration.fields_by_key().items() if field.is_required()]
+        left = [key for key in required if key not in {*word, *selecting_keys(declaration), "because"}]
+        found = {key: (declaration.fields_by_key()[key].examples or [None])[0] for key in left}
+        assert None not in found.values(), (name, found)
+        begin[name] = word | found
+    assert Scene.model_validate(begin["Scene"]).rounds == 2000
+    for section in ("groups", "bonds", "forces"):
+        for declaration in sections()[section].declarations:
+            chosen = {key: "rope" for key in selecting_keys(declaration) if key == "within"}
+            written = {key: field.examples[0] for key, field in declaration.fields_by_key().items() if field.examples}
+            entry = {**begin[declaration.__name__], **written, **chosen}
+            Scene.model_validate({**begin["Scene"], section: {"rope": entry}})
 
 
 def test_types_and_defaults_in_words() -> None:

@@ -48,7 +48,7 @@ def require_one(declaration: Declaration, *keys: str) -> None:
     if len(given) != 1:
         names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
         found = " and ".join(f"`{key}`" for key in given) if given else "none"
-        context = {"names": names, "found": found}
+        context = {"names": names, "found": found, "first": keys[0]}
         raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)
 
 

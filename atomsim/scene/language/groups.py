@@ -25,18 +25,18 @@ from atomsim.scene.language.base import (
 class Rotation(Declaration):
     """A turn of the shape about its centroid, before it is placed."""
 
-    axis: Axis
+    axis: Axis = Field(examples=["z"])
     """Direction to turn about: x, y, z or [x, y, z] (right-handed)."""
-    degrees: Number
+    degrees: Number = Field(examples=[90])
     """Angle of the turn [degrees]."""
 
 
 class Spin(Declaration):
     """An initial rotation about the centroid."""
 
-    axis: Axis
+    axis: Axis = Field(examples=["z"])
     """Direction to spin about: x, y, z or [x, y, z] (right-handed)."""
-    rate: Number
+    rate: Number = Field(examples=[0.5])
     """Angular velocity [radians per unit of time]: each atom starts with rate · axis × (its offset) plus `velocity`."""
 
 
@@ -47,9 +47,9 @@ Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(as_tuple), OneOrList
 class Copies(Declaration):
     """Copies of a group about an axis or along a line, each one a part with a number of its own: `finger.0`."""
 
-    count: Count
+    count: Count = Field(examples=[3])
     """How many there are, with the group as written, which is number 0."""
-    step: Vector | None = None
+    step: Vector | None = Field(default=None, examples=[[0, 0, 5]])
     """Along a line: from each copy to the next [length]."""
     axis: Axis | None = None
     """About an axis: its direction, x, y, z or [x, y, z] (right-handed); velocities turn with the copies."""
@@ -95,9 +95,9 @@ class StringGroup(GroupBase):
 
     shape: Literal["string"]
     """Atoms along a straight line, numbered along it."""
-    count: Count | None = None
+    count: Count | None = Field(default=None, examples=[10])
     """Number of atoms."""
-    step: Vector | None = None
+    step: Vector | None = Field(default=None, examples=[[1, 0, 0]])
     """From each atom to the next [length]."""
     from_: Annotated[Vector | None, Field(alias="from")] = None
     """The place of the first atom [length], in place of `centre`."""
@@ -127,9 +127,9 @@ class RingGroup(GroupBase):
 
     shape: Literal["ring"]
     """Atoms on a circle, atom i at the angle 2πi/count from the first axis of its plane."""
-    count: Count
+    count: Count = Field(examples=[20])
     """Number of atoms."""
-    radius: Positive
+    radius: Positive = Field(examples=[4])
     """Radius of the circle through the centres [length]."""
     axis: AxisLetter = "z"
     """The axis through the ring; its plane is x–y for z, x–z for y, y–z for x, angles from the first of the two."""
@@ -140,9 +140,11 @@ class PolygonGroup(GroupBase):
 
     shape: Literal["polygon"]
     """A closed string through the corners; atoms are numbered along it from the first corner."""
-    corners: Annotated[tuple[Vector, ...], Field(strict=False, min_length=3)]
+    corners: Annotated[tuple[Vector, ...], Field(strict=False, min_length=3)] = Field(
+        examples=[[[0, 0, 0], [8, 0, 0], [0, 6, 0]]]
+    )
     """Three or more corner points [length]; only their relative places matter, `centre` places the shape."""
-    spacing: Positive
+    spacing: Positive = Field(examples=[1])
     """Distance between neighbours [length]; each side is divided evenly into the nearest whole number of steps."""
 
 
@@ -151,11 +153,11 @@ class PlaneGroup(GroupBase):
 
     shape: Literal["plane"]
     """A flat grid of nx · ny atoms; the atom at (x, y) has the index nx · y + x."""
-    counts: Annotated[tuple[Count, Count], Field(strict=False, title="[nx, ny]")]
+    counts: Annotated[tuple[Count, Count], Field(strict=False, title="[nx, ny]")] = Field(examples=[[12, 8]])
     """Numbers of atoms [nx, ny]."""
-    step_x: Vector
+    step_x: Vector = Field(examples=[[2, 0, 0]])
     """From each atom to the next along the grid's x [length]."""
-    step_y: Vector
+    step_y: Vector = Field(examples=[[0, 2, 0]])
     """From each atom to the next along the grid's y [length]."""
 
 
@@ -164,9 +166,11 @@ class BlockGroup(GroupBase):
 
     shape: Literal["block"]
     """A cubic grid of nx · ny · nz atoms; the atom at (x, y, z) has the index (z · ny + y) · nx + x, x fastest."""
-    counts: Annotated[tuple[Count, Count, Count], Field(strict=False, title="[nx, ny, nz]")]
+    counts: Annotated[tuple[Count, Count, Count], Field(strict=False, title="[nx, ny, nz]")] = Field(
+        examples=[[4, 4, 4]]
+    )
     """Numbers of atoms [nx, ny, nz]."""
-    spacing: Positive
+    spacing: Positive = Field(examples=[1.5])
     """Distance between neighbours along each axis [length]."""
 
 
@@ -175,9 +179,9 @@ class BallGroup(GroupBase):
 
     shape: Literal["ball"]
     """Atoms on spheres one inside the other, from the one in the middle outwards, each from below to above, z up."""
-    radius: Positive
+    radius: Positive = Field(examples=[3])
     """Radius of the outermost sphere, on which atoms have their centres [length]."""
-    spacing: Positive
+    spacing: Positive = Field(examples=[1])
     """Distance between neighbours, nearly [length]: between spheres, and on each of them."""
     hollow: bool = False
     """Whether there are atoms on the outermost sphere only."""
@@ -188,7 +192,9 @@ class AtomsGroup(GroupBase):
 
     shape: Literal["atoms"]
     """Atoms where you write them, numbered as written."""
-    positions: Annotated[tuple[Vector, ...], Field(strict=False, min_length=1)]
+    positions: Annotated[tuple[Vector, ...], Field(strict=False, min_length=1)] = Field(
+        examples=[[[0, 0, 0], [2, 0, 0]]]
+    )
     """The centre of each atom [length]."""
     centre: Vector | None = None  # type: ignore[assignment]  # the one shape that may stay where it is
     """Where the centroid of the atoms goes [length]; by default they stay where they are written."""

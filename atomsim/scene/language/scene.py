@@ -29,7 +29,7 @@ from atomsim.scene.language.silence import Silences
 class Jitter(Declaration):
     """A tiny seeded disturbance of the initial positions that breaks symmetry the same way every time."""
 
-    amplitude: NotNegative
+    amplitude: NotNegative = Field(examples=[1e-9])
     """Each coordinate moves by a uniform amount within ± this [length]."""
     seed: Round = 1
     """Seed of the random numbers; the same seed gives the same disturbance."""
@@ -81,21 +81,23 @@ def _check_version(value: Any) -> Any:
 class Scene(Declaration):
     """A scene: groups of atoms, what binds them, what may collide, what acts from outside."""
 
-    atomsim: Annotated[Literal[1], BeforeValidator(_check_version)]
+    atomsim: Annotated[Literal[1], BeforeValidator(_check_version)] = Field(examples=[1])
     """The version of the scene language, which is 1."""
     title: str = ""
     """One line that says what the scene shows."""
     description: str = ""
     """As much as you like to say about it."""
-    time_step: Positive
+    time_step: Positive = Field(examples=[0.02])
     """τ, by which velocities move positions in each round [time]."""
-    rounds: Count
+    rounds: Count = Field(examples=[2000])
     """Iteration rounds to run."""
     record_every: Count = 10
     """A frame is written at round 0, every so many rounds, and at the last round."""
     jitter: Jitter | None = None
     """A seeded disturbance of the initial positions."""
-    groups: Annotated[Named[Group], Field(min_length=1)]
+    groups: Annotated[Named[Group], Field(min_length=1)] = Field(
+        examples=[{"rope": {"shape": "string", "count": 10, "step": [1, 0, 0]}}]
+    )
     """What there is, by name; atoms are numbered in order of declaration."""
     bonds: Named[Bonds] = Field(default_factory=dict)
     """What holds together, by name; one force table each."""

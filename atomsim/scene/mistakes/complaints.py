@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 from atomsim.scene.declarations import declaration_at, sections
 from atomsim.scene.field_docs import descriptions, form
 from atomsim.scene.language import Scene
-from atomsim.scene.mistakes.hints import hint, hint_of_list
+from atomsim.scene.mistakes.hints import begin_with, hint, hint_of_list
 from atomsim.scene.mistakes.mistake import Mistake
 from atomsim.scene.mistakes.unknown import (
     MOST_LOOKED_AT,
@@ -154,7 +154,7 @@ def _message(details: ErrorDetails, path: KeyPath, data: dict[str, Any], source:
         case "name":
             return f"{details['msg']} (got {shown(path[-1])})"
         case "one_of":
-            return details["msg"] + misnamed(path, data, source)
+            return details["msg"] + (misnamed(path, data, source) or _first_way(details, path, data))
         case kind if kind in _SAYS_ALL:
             return details["msg"]
         case kind:
@@ -199,7 +199,15 @@ def _missing(path: KeyPath, data: Any) -> str:
     declaration = declaration_at(path[:-1], data)
     said = descriptions(declaration)[str(path[-1])].rstrip(".") if declaration is not None else ""
     is_null = path[-1] in value_at(path[:-1], data)
-    return f"needs a value (got null): {said}" if is_null else f"missing: {said}"
+    begin = begin_with(declaration, str(path[-1]), data) if declaration is not None else ""
+    return f"needs a value (got null): {said}" if is_null else f"missing: {said}{begin}"
+
+
+def _first_way(details: ErrorDetails, path: KeyPath, data: dict[str, Any]) -> str:
+    """Say how to begin where a declaration says none of the keys of which it needs one."""
+    declaration, key = declaration_at(path, data), details["ctx"]["first"]
+    is_said = details["ctx"]["found"] != "none"
+    return "" if is_said or declaration is None else begin_with(declaration, key, data)
 
 
 def _form(path: KeyPath, data: Any) -> str:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from atomsim.scene.declarations import selecting_keys
+from atomsim.scene.language import Declaration
 from atomsim.scene.language.css_colors import CSS_COLORS
 from atomsim.scene.mistakes.lookalikes import plain
 from atomsim.scene.mistakes.numbers import NO_COMMAS, numbers_meant
-from atomsim.scene.mistakes.wording import either, shown, suggestion
+from atomsim.scene.mistakes.wording import either, listed, shown, suggestion
 from atomsim.scene.source import KeyPath
 from atomsim.scene.yaml.scalars import is_number
 
@@ -36,6 +38,23 @@ def hint(kind: str, path: KeyPath, value: Any) -> str:
     if kind == "color" and isinstance(value, str):
         close = suggestion(value, CSS_COLORS)
         return f"; did you mean {close}?" if close is not None else ""
+    return ""
+
+
+def begin_with(declaration: type[Declaration], key: str, data: dict[str, Any]) -> str:
+    """Return what completes a message about a key that is missing, `; begin with `radius: 4``, or nothing.
+
+    Args:
+        declaration: where it is missing.
+        key: the key.
+        data: the plain data of the scene.
+    """
+    examples, groups = declaration.fields_by_key()[key].examples, data.get("groups")
+    if examples:
+        value = examples[0] if isinstance(examples[0], str) else shown(examples[0])
+        return f"; begin with `{key}: {value}`"
+    if key in selecting_keys(declaration) and isinstance(groups, dict) and groups:
+        return f"; the groups are {listed(list(groups))}"
     return ""
 
 
