@@ -11,18 +11,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from atomsim.compiler.coincident import Pairs
+from atomsim.compiler.coincident import Pairs, coincident_anywhere
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
 from atomsim.core.model import CollisionTable, Floats, Within
 from atomsim.core.pairs.collisions import n_collision_pairs
-from atomsim.scene.language import Bonds, Rest, Scene, Vector
+from atomsim.scene.language import AtomsGroup, Bonds, Rest, Scene, Vector
 from atomsim.scene.source import KeyPath
 
-LARGEST = 1e150
-"""The largest coordinate, velocity or desired distance: squares of differences stay finite."""
+LARGEST = 1e7
+"""The largest coordinate, desired distance or time step, and how far an atom may go in the first round.
 
-TOO_LARGE = "too large to compute with"
+The squares of larger distances, which energies are made of, are no longer exact to a hundredth.
+"""
+
+TOO_LARGE = f"too large to compute with: more than {LARGEST:g}"
 
 
 class Complaint(NamedTuple):
@@ -32,11 +35,14 @@ class Complaint(NamedTuple):
     message: str
 
 
-def too_many_atoms(n_atoms: int) -> Iterator[Complaint]:
-    """Check that the atoms fit into memory, before any is made."""
-    short = shortage(n_atoms * BYTES_PER_ATOM, f"{n_atoms:,} atoms")
-    if short is not None:
-        yield Complaint(("groups",), short)
+def too_many_atoms(layouts: Mapping[str, GroupLayout]) -> Iterator[Complaint]:
+    """Check that the atoms fit into memory, before any is made, and find the group that asks for too many."""
+    for name, layout in layouts.items():
+        what = f"{layout.stop:,} atoms" + (", with those before," if layout.start else "")
+        short = shortage(layout.stop * BYTES_PER_ATOM, what)
+        if short is not None:
+            yield Complaint(("groups", name), short)
+            return
 
 
 def too_many_bonds(bonds: Mapping[str, Bonds], selections: Selections) -> Iterator[Complaint]:
@@ -58,13 +64,32 @@ def too_many_bonds(bonds: Mapping[str, Bonds], selections: Selections) -> Iterat
 def too_large_numbers(
     scene: Scene, layouts: Mapping[str, GroupLayout], position: Floats, velocity: Floats
 ) -> Iterator[Complaint]:
-    """Check numbers that are finite one by one, but not where they put the atoms or not when they are squared."""
+    """Check numbers that are finite one by one, but too large where they put the atoms or when they are squared."""
     if scene.time_step > LARGEST:
         yield Complaint(("time_step",), f"is {TOO_LARGE}")
+        return  # which is why atoms would go too far
+    if scene.jitter is not None and scene.jitter.amplitude > LARGEST:
+        yield Complaint(("jitter", "amplitude"), f"is {TOO_LARGE}")
     for name, layout in layouts.items():
         atoms = slice(layout.start, layout.stop)
-        if not all((np.abs(numbers[atoms]) <= LARGEST).all() for numbers in (position, velocity)):
-            yield Complaint(("groups", name), f"its numbers are {TOO_LARGE}")
+        if not (np.abs(position[atoms]) <= LARGEST).all():
+            yield Complaint(("groups", name), f"its coordinates are {TOO_LARGE}")
+        elif not (np.abs(velocity[atoms] * scene.time_step) <= LARGEST).all():
+            yield Complaint(("groups", name), f"its way in the first round is {TOO_LARGE}")
+
+
+def atoms_at_one_place(
+    scene: Scene, layouts: Mapping[str, GroupLayout], position: Floats, selections: Selections
+) -> Iterator[Complaint]:
+    """Check that the atoms of each shape have places of their own: one without extent, or folded, has not.
+
+    Atoms whose positions are written may be at one place as long as no force acts between them.
+    """
+    for name, layout in layouts.items():
+        if isinstance(scene.groups[name], AtomsGroup):
+            continue
+        first, second = coincident_anywhere(position[layout.start : layout.stop])
+        yield from _at_one_place(("groups", name), (first + layout.start, second + layout.start), "", selections)
 
 
 def too_large_rest(path: KeyPath, rest: Rest) -> Iterator[Complaint]:
@@ -76,7 +101,7 @@ def too_large_rest(path: KeyPath, rest: Rest) -> Iterator[Complaint]:
 def too_large_point(path: KeyPath, point: Vector) -> Iterator[Complaint]:
     """Check that squares of differences from a fixed point are finite."""
     if max(map(abs, point)) > LARGEST:
-        yield Complaint(path, f"its numbers are {TOO_LARGE}")
+        yield Complaint(path, f"its coordinates are {TOO_LARGE}")
 
 
 def at_one_place(path: KeyPath, pairs: Pairs, what: str, selections: Selections) -> Iterator[Complaint]:
@@ -88,11 +113,15 @@ def at_one_place(path: KeyPath, pairs: Pairs, what: str, selections: Selections)
         what: what the declaration makes of them, for people.
         selections: know how atoms are called.
     """
+    yield from _at_one_place(path, pairs, f"are {what} but ", selections)
+
+
+def _at_one_place(path: KeyPath, pairs: Pairs, but: str, selections: Selections) -> Iterator[Complaint]:
     first, second = pairs
     if first.size:
         one, other = (selections.expression(int(atoms[0])) for atoms in pairs)
         more = " (and so do others)" if ((first != first[0]) | (second != second[0])).any() else ""
-        yield Complaint(path, f"{one} and {other} are {what} but start at the same place{more}")
+        yield Complaint(path, f"{one} and {other} {but}start at the same place{more}")
 
 
 def nothing_collides(path: KeyPath, table: CollisionTable) -> Iterator[Complaint]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from atomsim.core.model import Between, CollisionTable, Floats, Indices, Within
@@ -24,6 +26,21 @@ def coincident_among(position: Floats, first: Indices, second: Indices) -> Pairs
     """
     coincide = pair_squares(position.T, first, second) == 0.0
     return first[coincide], second[coincide]
+
+
+def coincident_anywhere(position: Floats) -> Pairs:
+    """Return pairs of atoms at exactly one place, some at every such place.
+
+    Args:
+        position: atom centres [length], (n_atoms, 3).
+    """
+    x, y, z = position.T
+    mixed = (x + math.sqrt(2.0) * y) + math.pi * z  # the same for atoms at one place, and hardly ever for others
+    in_order = np.sort(mixed)
+    repeated = in_order[1:][in_order[1:] == in_order[:-1]]
+    atoms = np.flatnonzero(np.isin(mixed, repeated)) if repeated.size else np.empty(0, dtype=np.int64)
+    order, start, stop = _crowds(position[atoms])
+    return atoms[order[start]], atoms[order[stop - 1]]
 
 
 def coincident_pairs(position: Floats, table: CollisionTable) -> Pairs:

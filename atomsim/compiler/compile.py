@@ -43,6 +43,7 @@ from atomsim.scene import LoadedScene
 from atomsim.scene.language import Bonds, Collisions, Jitter, Rest, Scene
 from atomsim.scene.language.base import is_point
 from atomsim.scene.language.forces import Damping, Force, Gravity, Hold, Oscillate, Push, Tether, Torque
+from atomsim.scene.mistakes.mistake import first_of
 from atomsim.scene.source import KeyPath, Source
 
 Array = TypeVar("Array", Floats, Indices)
@@ -79,7 +80,7 @@ class _Compiler:
         scene = self._scene
         layouts = lay_out(scene)
         n_atoms = sum(layout.stop - layout.start for layout in layouts.values())
-        self._stop_on(checks.too_many_atoms(n_atoms))
+        self._stop_on(checks.too_many_atoms(layouts))
         self._selections = Selections(layouts, n_atoms)
         with np.errstate(over="ignore", invalid="ignore"):  # what grows too large is reported next
             placed = [place(group) for group in scene.groups.values()]
@@ -87,6 +88,7 @@ class _Compiler:
             velocity = np.concatenate([velocity for _, velocity in placed])
             self._position = _jittered(self._placed, scene.jitter)
         self._stop_on(checks.too_large_numbers(scene, layouts, self._position, velocity))
+        self._stop_on(checks.atoms_at_one_place(scene, layouts, self._placed, self._selections))
         self._stop_on(checks.too_many_bonds(scene.bonds, self._selections))
         self._bonds = _all_of([self._bond_table(name, entry) for name, entry in scene.bonds.items()])
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
@@ -284,7 +286,7 @@ class _Compiler:
 
     def _stop_if_wrong(self) -> None:
         if self._problems:
-            raise SceneError(sorted(self._problems, key=_place_in_text))
+            raise SceneError(first_of(sorted(self._problems, key=_place_in_text), self._source.mark(())))
 
 
 def _place_in_text(problem: Problem) -> tuple[str, int, int]:

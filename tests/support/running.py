@@ -37,14 +37,19 @@ def compiled(groups: dict[str, Any], time_step: float = 0.05, **sections: Any) -
 
 
 def without_mistakes(data: dict[str, Any]) -> tuple[Scene, Model, State]:
-    """Compile random data without the declarations that make no sense for the groups they name."""
+    """Compile random data without the declarations that make no sense for the groups they name.
+
+    A group whose atoms are at one place becomes one of atoms that are not, so that there is always one.
+    """
     while True:
         scene = scene_of(**data)
         try:
             return scene, *compile_scene(LoadedScene(scene))
         except SceneError as error:
             for section, name in {tuple(problem.path.split(".")[:2]) for problem in error.problems}:
-                data = {**data, section: {key: value for key, value in data[section].items() if key != name}}
+                instead = {name: atoms_at((0, 0, 9), (2, 0, 9), (4, 1, 9))} if section == "groups" else {}
+                kept = {key: value for key, value in data[section].items() if key != name or instead}
+                data = {**data, section: kept | instead}
 
 
 def after(model: Model, state: State, n_rounds: int) -> State:

@@ -14,6 +14,7 @@ import pytest
 from support.running import atoms_at, compiled, scene_of
 
 from atomsim.compiler import compile_scene, room
+from atomsim.compiler.checks import LARGEST
 from atomsim.core.model import Between, PushForce, TetherForce, TorqueForce, Within
 from atomsim.core.pairs import bonded, near
 from atomsim.core.pairs.collisions import n_collision_pairs
@@ -218,19 +219,21 @@ def test_atoms_are_at_one_place_where_the_square_of_their_distance_is_zero(
 
 
 def test_atoms_that_jitter_puts_at_one_place() -> None:
-    """So far out that floats are 8 apart: a jitter of up to 6 moves an atom by 8 or not at all."""
-    groups = {"a": atoms_at((4e16, 4e16, 4e16), (4e16 + 8.0, 4e16, 4e16))}
+    """A jitter of up to three quarters of the gap between two floats moves an atom by that gap or not at all."""
+    far = 8e6
+    gap = math.ulp(far)
+    groups = {"a": atoms_at((far, far, far), (far + gap, far, far))}
     sections = {"bonds": {"b": {"within": "a", "rule": "all-pairs"}}, "collisions": {"c": {"within": "a"}}}
     compiled(groups, **sections)
-    compiled(groups, jitter={"amplitude": 6.0, "seed": 1}, **sections)
-    assert mistakes(groups, jitter={"amplitude": 6.0, "seed": 4}, **sections) == [
+    compiled(groups, jitter={"amplitude": 0.75 * gap, "seed": 1}, **sections)
+    assert mistakes(groups, jitter={"amplitude": 0.75 * gap, "seed": 4}, **sections) == [
         "bonds.b: a[0] and a[1] are bound but start at the same place",
         "collisions.c: a[0] and a[1] are set to collide but start at the same place",
     ]
 
 
 def test_a_crowd_at_one_place_is_told_at_once() -> None:
-    groups = {"crowd": {"shape": "string", "count": 200_000, "step": [0, 0, 0]}}
+    groups = {"crowd": atoms_at(*[(0, 0, 0)] * 200_000)}
     assert mistakes(groups, collisions={"c": {"within": "crowd"}}) == [
         "collisions.c: crowd[0] and crowd[199999] are set to collide but start at the same place"
     ]
@@ -241,25 +244,34 @@ def test_a_crowd_at_one_place_is_told_at_once() -> None:
     [
         (
             {"a": {"shape": "string", "count": 10**12, "step": [3, 0, 0]}},
-            "groups: 1,000,000,000,000 atoms need about 600 TB of memory, and 8.0 GB are free",
+            "groups.a: 1,000,000,000,000 atoms need about 600 TB of memory, and 8.0 GB are free",
         ),
         (
             {"a": {"shape": "block", "counts": [10**5, 10**5, 10**5], "spacing": 3}},
-            "groups: 1,000,000,000,000,000 atoms need about 600 PB of memory, and 8.0 GB are free",
+            "groups.a: 1,000,000,000,000,000 atoms need about 600 PB of memory, and 8.0 GB are free",
         ),
         (
             {"a": {"shape": "polygon", "corners": [[0, 0, 0], [1, 0, 0], [0.5, 0, 0]], "spacing": 1e-12}},
-            "groups: 2,000,000,000,000 atoms need about 1 PB of memory, and 8.0 GB are free",
+            "groups.a: 2,000,000,000,000 atoms need about 1 PB of memory, and 8.0 GB are free",
         ),
         (
             {"a": {"shape": "polygon", "corners": [[0, 0, 0], [1e308, 0, 0], [-1e308, 0, 0]], "spacing": 1e-320}},
-            "groups: 3,000,000,000,000,000 atoms need about 1800 PB of memory, and 8.0 GB are free",
+            "groups.a: 3,000,000,000,000,000 atoms need about 1800 PB of memory, and 8.0 GB are free",
         ),
     ],
 )
 def test_absurd_numbers_of_atoms(groups: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(room, "free_memory", lambda: 8 * 10**9)
     assert mistakes(groups) == [message]
+
+
+def test_too_many_atoms_are_blamed_on_the_group_that_asks_for_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(room, "free_memory", lambda: 10_000 * room.BYTES_PER_ATOM)
+    few, many = ({"shape": "string", "count": count, "step": [3, 0, 0]} for count in (6000, 20_000))
+    compiled({"a": few})
+    assert mistakes({"a": few, "b": many, "c": many})[0].startswith("groups.b: 26,000 atoms, with those before, need ")
+    assert mistakes({"a": few, "b": few, "c": many})[0].startswith("groups.b: 12,000 atoms, with those before, need ")
+    assert mistakes({"b": many, "a": few})[0].startswith("groups.b: 20,000 atoms need ")
 
 
 MILLION = {"a": {"shape": "string", "count": 10**6, "step": [3, 0, 0]}}
@@ -301,36 +313,36 @@ def test_a_million_colliding_atoms_compile_without_their_pairs() -> None:
 
 
 @pytest.mark.parametrize(
-    "group",
+    ("group", "what"),
     [
-        {"shape": "string", "count": 3, "step": [1e200, 0, 0]},
-        {"shape": "string", "count": 3, "step": [1, 0, 0], "velocity": [0, 1e300, 0]},
-        {"shape": "ring", "count": 3, "radius": 1e300},
-        atoms_at((1.7e308, 0, 0), (1.7e308, 0, 0), centre=[0, 0, 0]),
+        ({"shape": "string", "count": 3, "step": [1e200, 0, 0]}, "its coordinates are"),
+        (
+            {"shape": "string", "count": 3, "step": [1, 0, 0], "velocity": [0, 1e300, 0]},
+            "its way in the first round is",
+        ),
+        ({"shape": "ring", "count": 3, "radius": 1e300}, "its coordinates are"),
+        (atoms_at((1.7e308, 0, 0), (1.7e308, 0, 0), centre=[0, 0, 0]), "its coordinates are"),
+        (atoms_at((0, 0, 0), (1e150, 0, 0)), "its coordinates are"),
     ],
 )
-def test_numbers_too_large_to_compute_with(group: dict[str, Any]) -> None:
+def test_numbers_too_large_to_compute_with(group: dict[str, Any], what: str) -> None:
     assert mistakes({"fine": atoms_at((0, 0, 0)), "a": group}) == [
-        "groups.a: its numbers are too large to compute with"
+        f"groups.a: {what} too large to compute with: more than 1e+07"
     ]
 
 
 @pytest.mark.parametrize(
     ("sections", "message"),
     [
-        ({"time_step": 1e151}, "time_step: is too large to compute with"),
-        (
-            {"bonds": {"b": {"within": "a", "rule": "all-pairs", "rest": 1e151}}},
-            "bonds.b.rest: is too large to compute with",
-        ),
-        (
-            {"forces": {"t": {"kind": "tether", "target": [0, 0, 1e151]}}},
-            "forces.t.target: its numbers are too large to compute with",
-        ),
+        ({"time_step": 1e15}, "time_step: is"),
+        ({"jitter": {"amplitude": 1e308}}, "jitter.amplitude: is"),
+        ({"bonds": {"b": {"within": "a", "rule": "all-pairs", "rest": 1e151}}}, "bonds.b.rest: is"),
+        ({"forces": {"t": {"kind": "tether", "target": [0, 0, 1e151]}}}, "forces.t.target: its coordinates are"),
     ],
 )
 def test_other_numbers_too_large_to_compute_with(sections: dict[str, Any], message: str) -> None:
-    assert mistakes({"a": atoms_at((0, 0, 0), (3, 0, 0))}, **sections) == [message]
+    found = mistakes({"a": atoms_at((0, 0, 0), (3, 0, 0))}, **sections)
+    assert found[0] == f"{message} too large to compute with: more than 1e+07"
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -338,7 +350,10 @@ def test_other_numbers_too_large_to_compute_with(sections: dict[str, Any], messa
     ("where", "write"),
     [
         ("groups.pair", lambda number: {"groups": {"pair": atoms_at((0, 0, 0), (0, number, 0))}}),
-        ("groups.pair", lambda number: {"groups": {"pair": atoms_at((0, 0, 0), velocity=[0, 0, number])}}),
+        (
+            "groups.pair",
+            lambda number: {"time_step": 0.5, "groups": {"pair": atoms_at((0, 0, 0), velocity=[0, 0, 2 * number])}},
+        ),
         ("time_step", lambda number: {"time_step": abs(number)}),
         ("bonds.b.rest", lambda number: {"bonds": {"b": {"within": "pair", "rule": "all-pairs", "rest": abs(number)}}}),
         ("forces.t.target", lambda number: {"forces": {"t": {"kind": "tether", "target": [number, 0, 0]}}}),
@@ -349,15 +364,35 @@ def test_other_numbers_too_large_to_compute_with(sections: dict[str, Any], messa
     ],
 )
 def test_the_largest_number_to_compute_with(where: str, write: Callable[[float], dict[str, Any]], sign: float) -> None:
-    compiled(**{"groups": PAIR, **write(sign * 1e150)})
-    [message] = mistakes(**{"groups": PAIR, **write(sign * math.nextafter(1e150, math.inf))})
+    compiled(**{"groups": PAIR, **write(sign * LARGEST)})
+    [message] = mistakes(**{"groups": PAIR, **write(sign * math.nextafter(LARGEST, math.inf))})
     assert message.startswith(f"{where}: ")
-    assert message.endswith("too large to compute with")
+    assert message.endswith("too large to compute with: more than 1e+07")
 
 
-def test_a_jitter_too_large_to_compute_with() -> None:
-    found = mistakes({"a": atoms_at((0, 0, 0), (1, 0, 0))}, jitter={"amplitude": 1e308})
-    assert found == ["groups.a: its numbers are too large to compute with"]
+@pytest.mark.parametrize(
+    ("group", "pair"),
+    [
+        ({"shape": "polygon", "corners": [[1, 1, 1]] * 3, "spacing": 1}, "a[0] and a[2] start at the same place"),
+        ({"shape": "polygon", "corners": [[0, 0, 0], [3, 0, 0], [3, 0, 0], [0, 3, 0]], "spacing": 1}, "a[3] and a[4]"),
+        ({"shape": "polygon", "corners": [[0, 0, 0], [3, 0, 0]] * 2, "spacing": 1}, "a["),
+        ({"shape": "string", "count": 5, "step": [0, 0, 0]}, "a[0] and a[4]"),
+        ({"shape": "plane", "counts": [3, 1], "step_x": [0, 0, 0], "step_y": [0, 0, 0]}, "a[0] and a[2]"),
+        ({"shape": "plane", "counts": [3, 3], "step_x": [2, 0, 0], "step_y": [4, 0, 0]}, "a["),
+        ({"shape": "ring", "count": 9, "radius": 1e-13}, "a["),
+        ({"shape": "ring", "count": 9, "radius": 4, "copies": {"count": 2, "step": [0, 0, 0]}}, "a.0["),
+        ({"shape": "block", "counts": [2, 1, 1], "spacing": 1e-10, "centre": [9e6, 0, 0]}, "a[0] and a[1]"),
+    ],
+)
+def test_a_shape_whose_atoms_are_at_one_place(group: dict[str, Any], pair: str) -> None:
+    [message] = mistakes({"fine": atoms_at((0, 0, 0)), "a": group})
+    assert message.startswith(f"groups.a: {pair}")
+    assert " start at the same place" in message
+
+
+def test_a_single_atom_and_crossing_lines_have_places_of_their_own() -> None:
+    compiled({"a": {"shape": "string", "count": 1, "step": [0, 0, 0]}})
+    compiled({"a": {"shape": "plane", "counts": [3, 3], "step_x": [2, 0, 0], "step_y": [math.pi, 0, 0]}})
 
 
 def test_jitter_is_drawn_atom_by_atom_and_only_by_its_seed() -> None:
