@@ -14,18 +14,21 @@ import numpy as np
 from atomsim.compiler.coincident import Pairs, coincident_anywhere
 from atomsim.compiler.room import BYTES_PER_ATOM, BYTES_PER_PAIR, n_countable_pairs, shortage
 from atomsim.compiler.selections import GroupLayout, SelectionError, Selections
+from atomsim.core.diagnosis.blowup import FLOWN_APART
 from atomsim.core.model import CollisionTable, Floats, Within
 from atomsim.core.pairs.collisions import n_collision_pairs
 from atomsim.scene.language import AtomsGroup, Bonds, Rest, Scene, Vector
 from atomsim.scene.source import KeyPath
 
 LARGEST = 1e7
-"""The largest coordinate, desired distance or time step, and how far an atom may go in the first round.
+"""The largest coordinate, desired distance or time step.
 
 The squares of larger distances, which energies are made of, are no longer exact to a hundredth.
 """
 
 TOO_LARGE = f"too large to compute with: more than {LARGEST:g}"
+
+TOO_FAR = f"too far to compute with: more than {FLOWN_APART:g}"
 
 
 class Complaint(NamedTuple):
@@ -74,8 +77,8 @@ def too_large_numbers(
         atoms = slice(layout.start, layout.stop)
         if not (np.abs(position[atoms]) <= LARGEST).all():
             yield Complaint(("groups", name), f"its coordinates are {TOO_LARGE}")
-        elif not (np.abs(velocity[atoms] * scene.time_step) <= LARGEST).all():
-            yield Complaint(("groups", name), f"its way in the first round is {TOO_LARGE}")
+        elif not (np.abs(velocity[atoms] * scene.time_step) <= FLOWN_APART).all():
+            yield Complaint(("groups", name), f"its way in the first round is {TOO_FAR}")
 
 
 def atoms_at_one_place(

@@ -63,7 +63,7 @@ def test_a_force_that_is_too_strong() -> None:
     assert report_of(PAIR, 0.1, forces={"wind": {"kind": "damping", "coefficient": 0.1}, "storm": force}) == (
         "the simulation blew up in round 1: calm[0] (atom 0) flew off\n"
         "  pushed hardest by forces.storm (<scene>:1), with an impulse of 1e+09 in one round\n"
-        "  time_step 0.1 is below inf, the limit of the stiffness: look at speeds\n"
+        "  nothing here is elastic: look at speeds\n"
         "  remedy: weaker external forces, lower velocities, more damping, or a smaller time_step"
     )
 
@@ -104,10 +104,46 @@ def test_colliding_atoms_that_meet_exactly(magnitude: float) -> None:
 
 
 def test_an_atom_that_nothing_pushes() -> None:
-    text = report_of({"a": atoms_at((0, 0, 0), velocity=[1e9, 0, 0])}, 1.0)
-    assert text.splitlines()[:2] == [
+    model, state = compiled({"a": atoms_at((0, 0, 0), velocity=[1, 0, 0])}, 1.0)
+    with pytest.raises(BlowUpError) as caught:
+        list(simulate(model, State(0, state.position, 1e9 * state.velocity), 10))
+    assert str(caught.value).splitlines()[:2] == [
         "the simulation blew up in round 1: a[0] (atom 0) flew off",
-        "  time_step 1 is below inf, the limit of the stiffness: look at speeds",
+        "  nothing here is elastic: look at speeds",
+    ]
+
+
+DRAG = {"kind": "damping", "coefficient": 0.9}
+
+
+def test_damping_does_not_push() -> None:
+    """It takes more in a round than the bond gives, but what it takes was there."""
+    rod = {"rod": {"shape": "string", "count": 12, "step": [1.5, 0, 0], "velocity": [0, 0, 1]}}
+    bonds = {"b": {"within": "rod", "rule": "all-pairs"}}
+    text = report_of(rod, 0.1, bonds=bonds, forces={"drag": DRAG}, jitter={"amplitude": 1e-3, "seed": 1})
+    _, pushed, stiff, remedy = text.splitlines()
+    assert pushed.startswith("  pushed hardest by bonds.b (<scene>:1), against rod[")
+    assert stiff == "  time_step is 0.1; the stiffness of the scene allows less than 0.0917 with its damping"
+    assert remedy == "  remedy: a smaller time_step or fewer bonds per atom, or less damping"
+
+
+def test_a_storm_is_to_blame_and_not_what_resists_it() -> None:
+    storm = {"kind": "push", "impulse": [0, 0, 5e7], "acts_on": "calm", "from_round": 2}
+    text = report_of(PAIR, 0.1, forces={"storm": storm, "drag": DRAG})
+    assert "  pushed hardest by forces.storm (<scene>:1), with an impulse of 5e+07 in one round" in text.splitlines()
+
+
+def test_damping_that_takes_more_than_there_is() -> None:
+    forces = {
+        "drag": DRAG,
+        "mud": {**DRAG, "coefficient": 1, "acts_on": ["calm", "pair[0]"]},
+        "oil": {**DRAG, "acts_on": "calm"},
+    }
+    groups = {**PAIR, "calm": atoms_at((0, 0, 9), velocity=[1, 0, 0])}
+    all_three = "forces.drag (<scene>:1), forces.mud (<scene>:1), forces.oil (<scene>:1)"
+    assert report_of(groups, 0.1, forces=forces).splitlines()[1:] == [
+        f"  {all_three} take 2.8 times its velocity in a round",
+        "  remedy: less damping, so that the coefficients on an atom add up to less than 2",
     ]
 
 

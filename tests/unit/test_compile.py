@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 import tracemalloc
 from collections.abc import Callable
 from typing import Any
@@ -312,23 +313,23 @@ def test_a_million_colliding_atoms_compile_without_their_pairs() -> None:
     assert peak < room.BYTES_PER_ATOM * 10**6
 
 
+LARGE = "its coordinates are too large to compute with: more than 1e+07"
+FAR = "its way in the first round is too far to compute with: more than 1e+06"
+
+
 @pytest.mark.parametrize(
-    ("group", "what"),
+    ("group", "message"),
     [
-        ({"shape": "string", "count": 3, "step": [1e200, 0, 0]}, "its coordinates are"),
-        (
-            {"shape": "string", "count": 3, "step": [1, 0, 0], "velocity": [0, 1e300, 0]},
-            "its way in the first round is",
-        ),
-        ({"shape": "ring", "count": 3, "radius": 1e300}, "its coordinates are"),
-        (atoms_at((1.7e308, 0, 0), (1.7e308, 0, 0), centre=[0, 0, 0]), "its coordinates are"),
-        (atoms_at((0, 0, 0), (1e150, 0, 0)), "its coordinates are"),
+        ({"shape": "string", "count": 3, "step": [1e200, 0, 0]}, LARGE),
+        ({"shape": "string", "count": 3, "step": [1, 0, 0], "velocity": [0, 1e300, 0]}, FAR),
+        ({"shape": "ring", "count": 3, "radius": 3, "spin": {"axis": "z", "rate": 1e9}}, FAR),
+        ({"shape": "ring", "count": 3, "radius": 1e300}, LARGE),
+        (atoms_at((1.7e308, 0, 0), (1.7e308, 0, 0), centre=[0, 0, 0]), LARGE),
+        (atoms_at((0, 0, 0), (1e150, 0, 0)), LARGE),
     ],
 )
-def test_numbers_too_large_to_compute_with(group: dict[str, Any], what: str) -> None:
-    assert mistakes({"fine": atoms_at((0, 0, 0)), "a": group}) == [
-        f"groups.a: {what} too large to compute with: more than 1e+07"
-    ]
+def test_numbers_too_large_to_compute_with(group: dict[str, Any], message: str) -> None:
+    assert mistakes({"fine": atoms_at((0, 0, 0)), "a": group}) == [f"groups.a: {message}"]
 
 
 @pytest.mark.parametrize(
@@ -352,7 +353,7 @@ def test_other_numbers_too_large_to_compute_with(sections: dict[str, Any], messa
         ("groups.pair", lambda number: {"groups": {"pair": atoms_at((0, 0, 0), (0, number, 0))}}),
         (
             "groups.pair",
-            lambda number: {"time_step": 0.5, "groups": {"pair": atoms_at((0, 0, 0), velocity=[0, 0, 2 * number])}},
+            lambda number: {"time_step": 0.5, "groups": {"pair": atoms_at((0, 0, 0), velocity=[0, 0, number / 5])}},
         ),
         ("time_step", lambda number: {"time_step": abs(number)}),
         ("bonds.b.rest", lambda number: {"bonds": {"b": {"within": "pair", "rule": "all-pairs", "rest": abs(number)}}}),
@@ -367,7 +368,7 @@ def test_the_largest_number_to_compute_with(where: str, write: Callable[[float],
     compiled(**{"groups": PAIR, **write(sign * LARGEST)})
     [message] = mistakes(**{"groups": PAIR, **write(sign * math.nextafter(LARGEST, math.inf))})
     assert message.startswith(f"{where}: ")
-    assert message.endswith("too large to compute with: more than 1e+07")
+    assert re.search("too (large|far) to compute with: more than 1e", message)
 
 
 @pytest.mark.parametrize(

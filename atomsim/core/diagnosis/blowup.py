@@ -10,7 +10,7 @@ import numpy as np
 from atomsim.core.diagnosis.energy import SLACK, EnergyBudget, total_energy
 from atomsim.core.diagnosis.stiffness import is_damped_too_much, largest_time_step
 from atomsim.core.forces import acting, law
-from atomsim.core.model import Floats, Indices, Model, Observables, Origin, State, atom_name
+from atomsim.core.model import DampingForce, Floats, Indices, Model, Observables, Origin, State, atom_name
 from atomsim.core.pairs.collisions import CONTACT_SQUARED, table_pairs_near
 from atomsim.core.pairs.near import pair_squares, squared_distance
 
@@ -67,16 +67,20 @@ def explain(
 
     Returns:
         A few lines: round, atom and group; the declaration that pushed it hardest, and against which atom; the largest
-        time step that the stiffness allows, unless two atoms at one place are to blame; what to change.
+        time step that the stiffness allows, unless two atoms at one place or damping alone did it; what to change.
     """
     with np.errstate(all="ignore"):
         met = _meeting(model, before) or _meeting(model, after)
         if met is not None:
             return met
         atom = _first_lost(after)
+        head = f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} {lost}"
+        overshoot = _overshoot(model, atom)
+        if overshoot is not None:
+            return f"{head}\n{overshoot}"
         pushes = _pushes(model, before, atom, forces)
         size, origin, partner = max(pushes, key=lambda push: push[0], default=(0.0, None, None))
-    lines = [f"the simulation blew up in round {after.round_index}: {atom_name(atom, model.groups)} {lost}"]
+    lines = [head]
     if origin is not None:
         against = f", against {atom_name(partner, model.groups)}" if partner is not None else ""
         lines.append(f"  pushed hardest by {origin}{against}, with an impulse of {size:.3g} in one round")
@@ -106,8 +110,9 @@ def _remedy(model: Model, first: State, before: State) -> list[str]:
                 f"  time_step is {time_step:g}; the stiffness {when} allows less than {limit:.3g}{damping}",
                 f"  remedy: a smaller time_step or fewer bonds per atom{less}",
             ]
+    stiff = f"time_step {time_step:g} is below {limit:.3g}, the limit of the stiffness"
     return [
-        f"  time_step {time_step:g} is below {limit:.3g}, the limit of the stiffness: look at speeds",
+        f"  {'nothing here is elastic' if math.isinf(limit) else stiff}: look at speeds",
         "  remedy: weaker external forces, lower velocities, more damping, or a smaller time_step",
     ]
 
@@ -137,10 +142,28 @@ def _meeting(model: Model, state: State) -> str | None:
     return None
 
 
+def _overshoot(model: Model, atom: int) -> str | None:
+    """Report damping that takes so much of an atom's velocity in a round that it comes back larger, if it does.
+
+    v ← (1 − m) · v grows where m, the sum of all coefficients, is above 2, and at 2 with the weakest bond.
+    """
+    damping = [force for force in model.forces if isinstance(force, DampingForce) and atom in force.atoms]
+    taken = sum(force.coefficient for force in damping)
+    if taken < 2.0:
+        return None
+    return (
+        f"  {', '.join(str(force.origin) for force in damping)} take {taken:g} times its velocity in a round\n"
+        "  remedy: less damping, so that the coefficients on an atom add up to less than 2"
+    )
+
+
 def _pushes(
     model: Model, state: State, atom: int, forces: Floats | None
 ) -> Iterator[tuple[float, Origin | str, int | None]]:
-    """Yield the strongest single force of every declaration on an atom: its size, where from, and the partner."""
+    """Yield the strongest single force of every declaration on an atom: its size, where from, and the partner.
+
+    Damping is none of them: what it resists is pushed by something else.
+    """
     position = np.ascontiguousarray(state.position.T)
     velocity = np.ascontiguousarray(state.velocity.T)
     for table in model.bonds:
@@ -150,6 +173,8 @@ def _pushes(
         rest_squared = np.full(first.size, CONTACT_SQUARED)
         yield from _strongest(collision.origin, position, atom, first, second, rest_squared)
     for force in acting(model.forces):
+        if isinstance(force, DampingForce):
+            continue
         impulse = np.zeros_like(position)
         law(force)(state.round_index, position, velocity, impulse)
         yield float(np.sqrt((impulse[:, atom] * impulse[:, atom]).sum())), force.origin, None
