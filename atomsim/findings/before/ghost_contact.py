@@ -71,14 +71,13 @@ def _crossed(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
 
 def _symptom(subject: Subject, one: int, other: int, distance: float, round_index: int) -> Symptom:
     names = [subject.model.groups[number].name for number in (one, other)]
-    when = "at the start" if not round_index else f"in round {round_index}"
+    near = f"are {distance:.2f} apart at the start (contact is at 2)"
+    if round_index:
+        near = f"come nearer than {GRAZE:g} in round {round_index}"
     return Symptom(
         at=("groups", names[_lacking(subject, one, other)]),
         names=tuple(("groups", name) for name in names),
-        message=(
-            f"{names[0]} and {names[1]} are {distance:.2f} apart {when} (contact is at 2) and may not touch: they pass "
-            "through one another"
-        ),
+        message=(f"{names[0]} and {names[1]} {near} and may not touch: they pass through one another"),
         remedy={"collisions": {subject.new_name("collisions", "_".join(names)): {"between": names}}},
         rounds=(round_index,),
     )
