@@ -34,7 +34,7 @@ def over_damped(subject: Subject) -> Iterator[Symptom]:
         lands = ahead.first is not None and ahead.first.round_index <= rounds
         drives = [drive for drive in mover.flight.drives if not lands or not _is_gravity(subject, drive)]
         way, free = (_way(mover.flight, drives, rounds, is_damped) for is_damped in (True, False))
-        if way < SHORT_WAY and free >= FARTHER * max(way, 0.5 * SHORT_WAY):
+        if way < SHORT_WAY and free >= FARTHER * SHORT_WAY:
             yield _symptom(subject, mover, damping, drives, way, free)
 
 
@@ -43,11 +43,11 @@ def _is_gravity(subject: Subject, drive: Drive) -> bool:
 
 
 def _heaviest(subject: Subject, mover: Mover) -> DampingForce | None:
-    """Return the damping that takes most from a body."""
+    """Return the damping that takes most from a body, of those that act on all of it."""
     forces = [
         force
         for force in subject.model.forces
-        if isinstance(force, DampingForce) and force.coefficient and np.isin(force.atoms, mover.atoms).any()
+        if isinstance(force, DampingForce) and force.coefficient and np.isin(mover.atoms, force.atoms).all()
     ]
     return max(forces, key=lambda force: force.coefficient, default=None)
 
