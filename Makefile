@@ -5,7 +5,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENES := $(sort $(wildcard scenes/*.yaml))
 
-.PHONY: help demo test test-newest test-lowest check format tests golden figures reference bench torture fuzz lock upgrade clean
+.PHONY: help demo test test-newest test-lowest check format tests golden expectations figures reference bench torture fuzz lock upgrade clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -15,7 +15,7 @@ demo: $(VENV)/installed ## install, run scenes/rods.yaml, draw the strip
 	$(BIN)/atomsim render out.h5 --rounds 0,300,600,1300
 	@echo "Now look at out.png."
 
-test: check tests golden ## everything that must hold
+test: check tests golden expectations ## everything that must hold
 
 check: $(VENV)/installed-dev ## format, lint, types, layers
 	$(BIN)/ruff format --check
@@ -29,6 +29,9 @@ tests: $(VENV)/installed-dev ## the test suite
 golden: $(VENV)/installed-dev ## every scene against its golden trajectory, bit for bit
 	$(BIN)/atomsim golden check $(SCENES) --into tests/golden --backend numpy
 	$(BIN)/atomsim golden check $(SCENES) --into tests/golden --backend numba
+
+expectations: $(VENV)/installed-dev ## every scene does what it says it should
+	$(BIN)/atomsim test scenes -j 2
 
 format: $(VENV)/installed-dev ## put the code into its format
 	$(BIN)/ruff format

@@ -92,6 +92,12 @@ Number 0 is the group as written. With a list of copies, each copies what the on
 [9, 0, 0]}, {count: 2, step: [0, 6, 0]}]` makes four, of which 0 and 1 are 9 apart, and 0 and 2 are 6 apart.
 """
 
+EXPECTATIONS = """\
+Each says one of `measure`, `all`, `any`, `not` and `that`, and one of `at`, `always`, `eventually` and `until`, which
+may also be left to one around it. [Expectations](expectations.md) explains them and defines how far each is from
+failing.
+"""
+
 FURTHER_EXAMPLES = {"string": ("from",), "push": ("towards",), "tether": ("foundation",)}
 """Of words that can be said in several ways."""
 
@@ -113,9 +119,9 @@ With Numba, which is an extra, long runs are faster, to the same bits: `pip inst
 that is printed says which.
 
 `--resume` needs no scene, because the trajectory holds its own. With a SCENE as well, `atomsim run --resume OUT SCENE`
-first makes sure that the two are the same: they may differ in `title`, `description`, `rounds`, `render` and
-`silence`; if anything else differs, nothing is run. It is the scene inside that goes on; `--rounds` says up to which
-round.
+first makes sure that the two are the same: they may differ in `title`, `description`, `rounds`, `render`, `silence`
+and `expect`; if anything else differs, nothing is run. It is the scene inside that goes on; `--rounds` says up to
+which round.
 """,
     "atomsim golden record": """\
 A golden holds the digest of every recorded round and a few frames in full. It is a small text file, to be committed
@@ -219,6 +225,9 @@ def _scene_reference() -> Iterator[str]:
     yield from _section("## Pictures: `render`", ["Render"], docs)
     yield from _section("### Camera", ["Camera"], docs)
     yield _examples("render")
+    yield from _section("## What should happen: `expect`", ["Expectation"], docs)
+    yield EXPECTATIONS
+    yield _examples("expect")
     yield from _section("## Findings that are meant: `silence`", ["Silence"], docs)
     yield _examples("silence")
 

@@ -14,6 +14,7 @@ from atomsim.cli.commands.run import run
 from atomsim.cli.commands.scenes import new, scenes
 from atomsim.cli.commands.schema import schema
 from atomsim.cli.commands.show import show
+from atomsim.cli.commands.test import try_out
 from atomsim.cli.commands.verify import verify
 from atomsim.cli.voice import Command, UsageError, in_our_words
 from atomsim.errors import InputError
@@ -31,6 +32,7 @@ app = typer.Typer(
 
 for command in (scenes, new, run, render, measure, check, show, compare, verify, recover, schema):
     app.command(cls=Command)(command)
+app.command("test", cls=Command)(try_out)
 app.add_typer(golden, name="golden")
 
 

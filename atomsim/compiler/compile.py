@@ -104,7 +104,12 @@ class _Compiler:
             collisions=_all_of(collisions),
             forces=tuple(forces),
         )
-        return model, State(0, _read_only(self._position), _read_only(velocity))
+        state = State(0, _read_only(self._position), _read_only(velocity))
+        if scene.expect:  # only they need what measures
+            from atomsim.compiler.expectations import senseless
+
+            self._stop_on(senseless(scene, model, state))
+        return model, state
 
     def _spans(self, layouts: dict[str, GroupLayout]) -> tuple[GroupSpan, ...]:
         """Give every group its place and origin."""

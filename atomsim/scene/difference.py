@@ -8,7 +8,7 @@ from atomsim.scene.language import Scene
 from atomsim.scene.mistakes.wording import shown
 from atomsim.scene.source import KeyPath, dotted
 
-ONLY_WORDS_AND_PICTURES = {"title", "description", "rounds", "render", "silence"}
+ONLY_WORDS_AND_PICTURES = {"title", "description", "rounds", "render", "silence", "expect"}
 """What may change while a run goes on: it moves no atom."""
 
 MOST_LINES = 12

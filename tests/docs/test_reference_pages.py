@@ -35,6 +35,7 @@ EXTRA_EXAMPLES = {
     "jitter",
     "render",
     "selections",
+    "expect",
     "extends",
     "silence",
 }

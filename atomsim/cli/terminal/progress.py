@@ -41,6 +41,10 @@ class Progress:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Take the line away, for something that is to stand in its place."""
         if self._width:
             self._write("")
             self._send("\r")

@@ -1,6 +1,7 @@
 """Version 1 of the scene language as frozen records; the string below each field documents it everywhere."""
 
 from atomsim.scene.language.base import Declaration, Rest, Vector
+from atomsim.scene.language.expectations import Expectation
 from atomsim.scene.language.groups import (
     AtomsGroup,
     BallGroup,
@@ -36,6 +37,7 @@ __all__ = [
     "Copies",
     "Declaration",
     "DistanceThresholdBonds",
+    "Expectation",
     "Group",
     "Jitter",
     "ListedBonds",

@@ -20,6 +20,7 @@ from atomsim.scene.language.base import (
     Round,
     Vector,
 )
+from atomsim.scene.language.expectations import Expectation
 from atomsim.scene.language.forces import Force
 from atomsim.scene.language.groups import Group
 from atomsim.scene.language.rules import Bonds, Collisions
@@ -105,6 +106,8 @@ class Scene(Declaration):
     """What may touch, by name; one force table each."""
     forces: Named[Force] = Field(default_factory=dict)
     """What acts from outside, by name, applied in order of declaration."""
+    expect: Named[Expectation] = Field(default_factory=dict)
+    """What should happen, by name; `atomsim test` runs the scene and says what does not."""
     render: Render = Field(default_factory=Render)
     """How `atomsim render` shows the trajectory."""
     silence: Silences = Field(default_factory=dict)
