@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -122,16 +122,16 @@ def flag(name: str, value: object) -> bool:
 
 
 def texts(name: str, value: Any, needs: str) -> tuple[str, ...]:
-    """Return texts, which may be none: not a single one, which would be taken letter by letter.
+    """Return texts, which may be none: not a single one, taken letter by letter, nor a mapping, taken by its keys.
 
     Raises:
         InputError: they are no texts, or do not come one after the other.
     """
     try:
-        found = () if isinstance(value, str | bytes) else tuple(value)
+        found = () if isinstance(value, str | bytes | Mapping) else tuple(value)
     except TypeError:
         found = (None,)
-    if isinstance(value, str | bytes) or not all(isinstance(text, str) for text in found):
+    if isinstance(value, str | bytes | Mapping) or not all(isinstance(text, str) for text in found):
         raise refused(name, needs, value)
     return found
 

@@ -29,6 +29,10 @@ class LoadedScene:
     scene: Scene
     source: Source = field(default_factory=Source)
 
+    def __post_init__(self) -> None:
+        arguments.instance("scene", self.scene, Scene, "a Scene, as atomsim.load puts it here")
+        arguments.instance("source", self.source, Source, "a Source, as atomsim.load puts it here")
+
 
 def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> LoadedScene:
     """Load a scene file.
@@ -42,10 +46,11 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> LoadedS
 
     Raises:
         SceneError: everything that is wrong with the scene, in the order of the file.
+        InputError: an argument that will not do.
     """
-    if not isinstance(path, str | os.PathLike):
+    name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
+    if not isinstance(name, str) or not name:
         raise arguments.refused("path", "the name of a file", path)
-    name = os.fspath(path)
     return _loaded(read_scene_file(name), name, overrides)
 
 
@@ -79,9 +84,12 @@ def loads(text: str, name: str = "<scene>", overrides: Iterable[str] = ()) -> Lo
 
     Raises:
         SceneError: everything that is wrong with the scene, in the order of the text.
+        InputError: an argument that will not do.
     """
     arguments.instance("text", text, str, "a scene as text")
     arguments.instance("name", name, str, "a text")
+    if text.strip().endswith((".yaml", ".yml", ".json")) and len(text.split()) == 1:
+        raise arguments.refused("text", "a scene as text, while atomsim.load takes the name of a file", text)
     return _loaded(read_scene_text(text, name), name, overrides)
 
 

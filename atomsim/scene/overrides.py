@@ -56,6 +56,8 @@ class _Setting:
         if not equals:
             raise self._refused((), "a setting is PATH=VALUE; the `=` is missing")
         self._parts = tuple(normalised(path).strip().split("."))
+        if not path.isprintable():
+            raise self._refused((), "a path is made of names; there is a character in it that cannot be seen")
         if not all(self._parts):
             raise self._refused((), "a path is keys and indices with a dot between two, like `forces.weight.impulse.2`")
         if self._parts[0] == "extends":

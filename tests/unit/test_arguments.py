@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,16 @@ def test_a_value_that_cannot_be_shown() -> None:
         arguments.whole("rounds", Shy())
     with pytest.raises(atomsim.InputError, match=r"\(got 'x{79}…\)$"):
         arguments.whole("rounds", "x" * 1000)
+
+
+class BytesPath:
+    """A path that is not text."""
+
+    def __fspath__(self) -> bytes:
+        return b"scenes/rods.yaml"
+
+    def __repr__(self) -> str:
+        return "a path of bytes"
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +97,32 @@ CALLS: dict[str, tuple[Any, str]] = {
         lambda at, scene: atomsim.load(SCENES / "rods.yaml", "rounds=5"),
         "overrides: needs texts such as [\"rounds=5\"] (got 'rounds=5')",
     ),
+    "load, settings as a mapping": (
+        lambda at, scene: atomsim.load(SCENES / "rods.yaml", {"rounds": 5}),
+        "overrides: needs texts such as [\"rounds=5\"] (got {'rounds': 5})",
+    ),
+    "load, one setting that is none": (
+        lambda at, scene: atomsim.load(SCENES / "rods.yaml", ["rounds=5", None]),
+        "overrides: needs texts such as [\"rounds=5\"] (got ['rounds=5', None])",
+    ),
+    "load, no name": (lambda at, scene: atomsim.load(""), f"path: needs {FILE} (got '')"),
+    "load, a path of bytes": (lambda at, scene: atomsim.load(BytesPath()), f"path: needs {FILE} (got a path of bytes)"),
+    "load, an open file": (lambda at, scene: atomsim.load(StringIO("")), f"path: needs {FILE} (got <_io.StringIO"),
+    "loads, the name of a file": (
+        lambda at, scene: atomsim.loads("scenes/rods.yaml"),
+        "text: needs a scene as text, while atomsim.load takes the name of a file (got 'scenes/rods.yaml')",
+    ),
+    "loads, bytes": (lambda at, scene: atomsim.loads(b"atomsim: 1"), "text: needs a scene as text (got b'atomsim: 1')"),
+    "loads, a setting for a name": (
+        lambda at, scene: atomsim.loads("atomsim: 1", ["rounds=5"]),
+        "name: needs a text (got ['rounds=5'])",
+    ),
+    "LoadedScene": (lambda at, scene: atomsim.LoadedScene({}), "scene: needs a Scene, as atomsim.load puts it here"),
+    "LoadedScene, source": (
+        lambda at, scene: atomsim.LoadedScene(scene.scene, "rods.yaml"),
+        "source: needs a Source, as atomsim.load puts it here (got 'rods.yaml')",
+    ),
+    "compile, a scene alone": (lambda at, scene: atomsim.compile(scene.scene), f"loaded: needs {SCENE} (got Scene("),
     "loads": (lambda at, scene: atomsim.loads(5), "text: needs a scene as text (got 5)"),
     "loads, name": (lambda at, scene: atomsim.loads("", 5), "name: needs a text (got 5)"),
     "simulate, report": (

@@ -394,7 +394,9 @@ def test_a_shorter_run_need_not_change_what_is_shown() -> None:
     assert loads(loads(text, overrides=["rounds=50"]).source.text).scene.render.rounds == (0, 100)
 
 
-@pytest.mark.parametrize("setting", ["\x1b[31m=1", "\udc80.x=1", "title=1\n2", "forces.a\nb=1"])
+@pytest.mark.parametrize(
+    "setting", ["\x1b[31m=1", "\udc80.x=1", "\udc80=1", "render.colors.\udc80=red", "title=1\n2", "forces.a\nb=1"]
+)
 def test_what_a_terminal_would_obey_is_escaped(setting: str) -> None:
     with pytest.raises(SceneError) as caught:
         loads(GOOD, overrides=["rounds=many", setting])
