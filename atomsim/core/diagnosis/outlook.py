@@ -75,8 +75,10 @@ class Surroundings:
         return self._movers[number] if number >= 0 else None
 
     def resting(self, atoms: Indices) -> Indices:
-        """Return those of some atoms that are of no mover."""
-        return atoms[self._mover[atoms] < 0]
+        """Return those of some atoms that are of no mover, or of one that nothing moves."""
+        is_still = np.array([not mover.flight.drives and not mover.flight.velocity.any() for mover in self._movers])
+        is_resting = np.append(is_still, True)[self._mover[atoms]]  # the last one is for what is of no mover
+        return np.asarray(atoms[is_resting])
 
     def stop(self, mover: Mover, round_index: float) -> None:
         """Let a mover be at rest from a round on, for all that meet it later."""
@@ -186,8 +188,7 @@ def _horizon(position: Floats, mover: Mover, partners: Indices, rounds: int) -> 
     goal = float((direction @ position[:, partners]).max() - (direction @ position[:, mover.atoms]).min()) + 4.0
     horizon = float(rounds)
     while horizon < FARTHEST_ROUND:
-        way, velocity = mover.flight.at(horizon)
-        if float(direction @ way) > goal + 2.0 * mover.radius or not float(direction @ velocity) > 0.0:
+        if float(direction @ mover.flight.at(horizon)[0]) > goal + 2.0 * mover.radius:
             break
         horizon *= 2.0
     return min(horizon, FARTHEST_ROUND) if math.isfinite(goal) else float(rounds)

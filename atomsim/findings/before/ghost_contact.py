@@ -53,18 +53,20 @@ def _may_pass(subject: Subject, first: Indices, second: Indices) -> Mask:
 
 
 def _crossed(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
-    """Yield groups that a body meets which may touch nothing, with the distance and the round."""
-    involved = np.zeros(subject.model.n_atoms, dtype=bool)
-    involved[involved_atoms(subject.model.collisions, subject.model.n_atoms)] = True
-    rounds = float(subject.scene.rounds)
+    """Yield groups that a body meets before it touches anything, with the distance and the round."""
+    is_turning = np.zeros(subject.model.n_atoms, dtype=bool)
     for mover in subject.movers:
-        if involved[mover.atoms].any() or mover.is_turning:
+        is_turning[mover.atoms] = mover.is_turning
+    for ahead in subject.outlooks:
+        mover = ahead.mover
+        if mover.is_turning:
             continue
-        own = distinct([subject.group[mover.atoms]])
+        last = min(float(subject.scene.rounds), ahead.first.round_index if ahead.first is not None else math.inf)
+        own, partners = distinct([subject.group[mover.atoms]]), distinct([subject.group[ahead.partners]])
         is_stranger: Mask = ~np.asarray(subject.are_joined[own].any(axis=0))
-        is_stranger[own] = False
-        strangers = np.flatnonzero(is_stranger[subject.group])
-        for meeting in subject.surroundings.meetings(mover, strangers, GRAZE, rounds):
+        is_stranger[own] = is_stranger[partners] = False
+        strangers = np.flatnonzero(is_stranger[subject.group] & ~is_turning)
+        for meeting in subject.surroundings.meetings(mover, strangers, GRAZE, last):
             one, other = sorted((int(subject.group[meeting.one]), int(subject.group[meeting.other])))
             yield one, other, meeting.distance, math.ceil(meeting.round_index)
 

@@ -46,7 +46,7 @@ def off_camera(subject: Subject) -> Iterator[Symptom]:
             message=(
                 f"{listed(names)} {verb(names, 'moves', 'move')} where the camera does not look: it shows "
                 f"{written.width:g} around {list(written.look_at)}, and {verb(names, 'it starts', 'they start')} "
-                f"around {[float(f'{x:.3g}') + 0.0 for x in centre]}"
+                f"around {[round(x, 2) + 0.0 for x in centre.tolist()]}"
             ),
             remedy={"render": {"camera": {"look_at": None, "width": None}}},
             rounds=tuple(rounds),
@@ -71,7 +71,11 @@ def _is_missing(subject: Subject, span: GroupSpan, camera: Camera, rounds: list[
         return bool(velocity.any()) and sum(_is_seen(camera, position + way) for way in ways) <= 1
     held = np.flatnonzero(subject.is_held & (subject.body == subject.body[atoms[0]]))
     if held.size:
-        return not subject.state.velocity[held].any() and not _may_be_seen(subject, camera, position, held)
+        drift = subject.model.time_step * subject.state.velocity[held]
+        is_known = bool((drift == drift[0]).all())  # else it is torn apart
+        return is_known and not any(
+            _may_be_seen(subject, camera, position, held, round_index * drift[0]) for round_index in rounds
+        )
     ahead = [each for each in subject.outlooks if np.isin(each.mover.atoms, atoms).any()]
     if not ahead or any(not _is_foreseen(each, rounds[-1]) for each in ahead):
         return False
@@ -98,11 +102,14 @@ def _is_seen(camera: Camera, position: Floats) -> bool:
     return bool(((np.abs(seen[0] / scale) < half) & (np.abs(seen[1] / scale) < half)).any())
 
 
-def _may_be_seen(subject: Subject, camera: Camera, position: Floats, held: Indices) -> bool:
-    """Return whether a group that hangs on held atoms can come into the picture: it stays in a ball about them."""
+def _may_be_seen(subject: Subject, camera: Camera, position: Floats, held: Indices, way: Floats) -> bool:
+    """Return whether a group that hangs on held atoms can be in the picture when these have gone some way.
+
+    It stays in a ball about them.
+    """
     anchor = subject.state.position[held].mean(axis=0)
     reach = SLACK * math.sqrt(float(np.square(position - anchor).sum(axis=1).max())) + 1.0
-    seen = camera.see(anchor[None, :])[:, 0]
+    seen = camera.see((anchor + way)[None, :])[:, 0]
     nearness = max(1.0 - camera.convergence * (float(seen[2]) + reach), 1e-3)
     half = 0.5 * camera.width + reach / nearness
     return bool((np.abs(seen[:2] / max(1.0 - camera.convergence * float(seen[2]), 1e-3)) < half).all())

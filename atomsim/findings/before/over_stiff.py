@@ -20,6 +20,9 @@ from atomsim.scene.source import KeyPath
 SQUEEZE = 4.0
 """What an atom that is pressed between two others adds to the stiffness: 2 for each contact."""
 
+FAR_BEYOND = 2.5
+"""A time step that is so many times too large has slipped, however stiff one of the rules is."""
+
 MANY_ATOMS, MANY_SPACINGS = 20, 3.0
 """A rule by distance that binds over half of the pairs of so many atoms, because its threshold is so many times their
 smallest distance, was probably meant to bind neighbours."""
@@ -37,14 +40,15 @@ def over_stiff(subject: Subject) -> Iterator[Symptom]:
 
 
 def _unstable(subject: Subject, stiffness: float, squeeze: float) -> Symptom:
-    """Blame the rule without which the time step would do; where there is none, the time step itself."""
+    """Blame the rule without which the time step would do; where there is none, or it is far off, the time step."""
     model = subject.model
     limit = 4.0 / stiffness if stiffness > 0.0 else math.inf
     left = [(largest_stiffness(_without(model, table), subject.state), table) for table in model.bonds]
     rest, stiffest = min(left, key=lambda item: item[0]) if left else (math.inf, None)
     at: KeyPath = ("time_step",)
     blamed: list[BondTable] = []
-    if stiffest is not None and model.time_step * (rest + squeeze) < 4.0:
+    is_far_beyond = model.time_step >= FAR_BEYOND * limit
+    if stiffest is not None and model.time_step * (rest + squeeze) < 4.0 and not is_far_beyond:
         at, blamed = ("bonds", stiffest.origin.name), [stiffest]
     else:
         blamed = [

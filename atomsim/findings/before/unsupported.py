@@ -26,7 +26,7 @@ def unsupported(subject: Subject) -> Iterator[Symptom]:
     for ahead in subject.outlooks:
         lasting = ahead.mover.flight.lasting
         drive = _strongest(ahead.mover.flight, lasting)
-        if drive is None or (ahead.mover.is_turning and ahead.meetings):
+        if drive is None or drive.from_round > 0.0 or (ahead.mover.is_turning and ahead.meetings):
             continue
         if not ahead.partners.size:
             if _is_gravity(subject, drive) and _leaves(subject, ahead.mover, lasting):
@@ -126,10 +126,11 @@ def _better_impulse(subject: Subject, ahead: Outlook, drive: Drive) -> Floats | 
     size = float(np.sqrt(impulse @ impulse))
     down = np.array([-float(subject.scene.render.camera.up == axis) for axis in "xyz"]) * size
     tried = [-impulse] if abs(float(impulse @ down)) > UPRIGHT * size * size else [-impulse, down]
-    for better in tried:
+    resting = subject.surroundings.resting(ahead.partners)
+    for better in tried if resting.size else ():
         pushed = Drive(drive.force, better, drive.from_round, drive.until_round)
         others = [pushed if other is drive else other for other in ahead.mover.flight.drives]
-        if subject.surroundings.meets(ahead.mover, ahead.mover.flight.with_drives(others), ahead.partners):
+        if subject.surroundings.meets(ahead.mover, ahead.mover.flight.with_drives(others), resting):
             return better + 0.0  # no negative zeros
     return None
 
