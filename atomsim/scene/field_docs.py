@@ -9,9 +9,11 @@ import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from atomsim.scene.declarations import declarations
 from atomsim.scene.language import Declaration
+from atomsim.scene.language.base import Begin
 from atomsim.scene.source import KeyPath
 from atomsim.scene.value_schema import Schema, in_words, value_schema
 
@@ -62,10 +64,9 @@ def default(declaration: type[Declaration], key: str) -> Schema:
     return {"default": json.loads(json.dumps(field.default))}
 
 
-def examples(declaration: type[Declaration], key: str) -> Schema:
-    """Return what a schema says of values to begin with; nothing if there are none."""
-    found = declaration.fields_by_key()[key].examples
-    return {"examples": found} if found else {}
+def examples(declaration: type[Declaration], key: str) -> list[Any]:
+    """Return the values to begin with under a key: one, or none."""
+    return [said.value for said in declaration.fields_by_key()[key].metadata if isinstance(said, Begin)]
 
 
 def _default_in_words(declaration: type[Declaration], key: str) -> str | None:

@@ -56,7 +56,7 @@ def _definition(declaration: type[Declaration]) -> Schema:
         "properties": {
             key: value_schema(declaration, key)
             | default(declaration, key)
-            | examples(declaration, key)
+            | ({"examples": found} if (found := examples(declaration, key)) else {})
             | {"description": described[key]}
             for key in fields
         },

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeGuard, TypeVar
 
 from pydantic import (
@@ -104,8 +105,8 @@ def _spell_out_axis(value: Any) -> Any:
 AxisLetter = Literal["x", "y", "z"]
 
 Axis = Annotated[
-    Vector,
-    Field(title="x, y, z or [x, y, z]"),
+    tuple[Number, Number, Number],
+    Field(strict=False, title="x, y, z or [x, y, z]"),
     AfterValidator(_check_direction),
     BeforeValidator(_spell_out_axis),
     WithJsonSchema(
@@ -147,6 +148,17 @@ def as_tuple(value: object) -> object:
 
 class OneOrList:
     """Says of a list that one item alone will do."""
+
+
+@dataclass(frozen=True)
+class Begin:
+    """Says of a key a value to begin with.
+
+    The examples of a `Field` would do but for pydantic before 2.11.5: where two fields are merged, the default that one
+    of them has anywhere comes with it. So no type here is made of two, and none gets a second where it is used.
+    """
+
+    value: Any
 
 
 Declared = TypeVar("Declared")

@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import (
     Axis,
+    Begin,
     Declaration,
     Number,
     Rest,
@@ -34,7 +35,7 @@ class Damping(ForceBase):
 
     kind: Literal["damping"]
     """Impulse −m · v per round."""
-    coefficient: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = Field(examples=[0.01])
+    coefficient: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False), Begin(0.01)]
     """m, the share of the velocity that is lost per round, from 0 to 1."""
 
 
@@ -43,7 +44,7 @@ class Gravity(ForceBase):
 
     kind: Literal["gravity"]
     """A constant impulse per round."""
-    impulse: Vector = Field(examples=[[0, 0, -0.001]])
+    impulse: Annotated[Vector, Begin([0, 0, -0.001])]
     """The impulse per round [velocity]."""
 
 
@@ -52,7 +53,7 @@ class Push(ForceBase):
 
     kind: Literal["push"]
     """The same impulse in every round, or one `towards` something, while from_round ≤ round < until_round."""
-    impulse: Vector | None = Field(default=None, examples=[[0.01, 0, 0]])
+    impulse: Annotated[Vector | None, Begin([0.01, 0, 0])] = None
     """The impulse per round [velocity]; or say `towards` and `magnitude`."""
     towards: Towards | None = None
     """Where each atom is pushed: a point [x, y, z], or a selection, whose centroid it is in every round."""
@@ -88,9 +89,9 @@ class Oscillate(ForceBase):
 
     kind: Literal["oscillate"]
     """Impulse · sin(2π · round / period + phase) per round."""
-    impulse: Vector = Field(examples=[[0, 0, 0.01]])
+    impulse: Annotated[Vector, Begin([0, 0, 0.01])]
     """The largest impulse per round [velocity]."""
-    period: Annotated[float, Field(ge=1e-6, allow_inf_nan=False)] = Field(examples=[200])
+    period: Annotated[float, Field(ge=1e-6, allow_inf_nan=False), Begin(200)]
     """Rounds per swing."""
     phase: Number = 0.0
     """Angle at round 0 [radians]."""
@@ -101,9 +102,9 @@ class Torque(ForceBase):
 
     kind: Literal["torque"]
     """Impulses along axis × (c − centre) whose total torque about the axis is `magnitude`."""
-    axis: Axis = Field(examples=["z"])
+    axis: Annotated[Axis, Begin("z")]
     """Direction of the axis: x, y, z or [x, y, z] (right-handed)."""
-    magnitude: Number = Field(examples=[0.1])
+    magnitude: Annotated[Number, Begin(0.1)]
     """Total torque per round [velocity · length]."""
     about: Selection | None = None
     """The atoms whose centroid is the centre; by default those it acts on."""
@@ -114,7 +115,7 @@ class Tether(ForceBase):
 
     kind: Literal["tether"]
     """The bond force towards `target`."""
-    target: Target = Field(examples=["initial"])
+    target: Annotated[Target, Begin("initial")]
     """The fixed point [length]; or `initial`: of each atom the place where it starts, an elastic foundation."""
     rest: Rest = "initial"
     """The desired distance: `initial` (the distance at the start; none from its own place) or a number [length]."""

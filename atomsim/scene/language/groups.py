@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from atomsim.scene.language.base import (
     Axis,
     AxisLetter,
+    Begin,
     Color,
     Count,
     Declaration,
@@ -25,18 +26,18 @@ from atomsim.scene.language.base import (
 class Rotation(Declaration):
     """A turn of the shape about its centroid, before it is placed."""
 
-    axis: Axis = Field(examples=["z"])
+    axis: Annotated[Axis, Begin("z")]
     """Direction to turn about: x, y, z or [x, y, z] (right-handed)."""
-    degrees: Number = Field(examples=[90])
+    degrees: Annotated[Number, Begin(90)]
     """Angle of the turn [degrees]."""
 
 
 class Spin(Declaration):
     """An initial rotation about the centroid."""
 
-    axis: Axis = Field(examples=["z"])
+    axis: Annotated[Axis, Begin("z")]
     """Direction to spin about: x, y, z or [x, y, z] (right-handed)."""
-    rate: Number = Field(examples=[0.5])
+    rate: Annotated[Number, Begin(0.5)]
     """Angular velocity [radians per unit of time]: each atom starts with rate · axis × (its offset) plus `velocity`."""
 
 
@@ -47,9 +48,9 @@ Rotations = Annotated[tuple[Rotation, ...], BeforeValidator(as_tuple), OneOrList
 class Copies(Declaration):
     """Copies of a group about an axis or along a line, each one a part with a number of its own: `finger.0`."""
 
-    count: Count = Field(examples=[3])
+    count: Annotated[Count, Begin(3)]
     """How many there are, with the group as written, which is number 0."""
-    step: Vector | None = Field(default=None, examples=[[0, 0, 5]])
+    step: Annotated[Vector | None, Begin([0, 0, 5])] = None
     """Along a line: from each copy to the next [length]."""
     axis: Axis | None = None
     """About an axis: its direction, x, y, z or [x, y, z] (right-handed); velocities turn with the copies."""
@@ -95,9 +96,9 @@ class StringGroup(GroupBase):
 
     shape: Literal["string"]
     """Atoms along a straight line, numbered along it."""
-    count: Count | None = Field(default=None, examples=[10])
+    count: Annotated[Count | None, Begin(10)] = None
     """Number of atoms."""
-    step: Vector | None = Field(default=None, examples=[[1, 0, 0]])
+    step: Annotated[Vector | None, Begin([1, 0, 0])] = None
     """From each atom to the next [length]."""
     from_: Annotated[Vector | None, Field(alias="from")] = None
     """The place of the first atom [length], in place of `centre`."""
@@ -127,9 +128,9 @@ class RingGroup(GroupBase):
 
     shape: Literal["ring"]
     """Atoms on a circle, atom i at the angle 2πi/count from the first axis of its plane."""
-    count: Count = Field(examples=[20])
+    count: Annotated[Count, Begin(20)]
     """Number of atoms."""
-    radius: Positive = Field(examples=[4])
+    radius: Annotated[Positive, Begin(4)]
     """Radius of the circle through the centres [length]."""
     axis: AxisLetter = "z"
     """The axis through the ring; its plane is x–y for z, x–z for y, y–z for x, angles from the first of the two."""
@@ -140,11 +141,9 @@ class PolygonGroup(GroupBase):
 
     shape: Literal["polygon"]
     """A closed string through the corners; atoms are numbered along it from the first corner."""
-    corners: Annotated[tuple[Vector, ...], Field(strict=False, min_length=3)] = Field(
-        examples=[[[0, 0, 0], [8, 0, 0], [0, 6, 0]]]
-    )
+    corners: Annotated[tuple[Vector, ...], Field(strict=False, min_length=3), Begin([[0, 0, 0], [8, 0, 0], [0, 6, 0]])]
     """Three or more corner points [length]; only their relative places matter, `centre` places the shape."""
-    spacing: Positive = Field(examples=[1])
+    spacing: Annotated[Positive, Begin(1)]
     """Distance between neighbours [length]; each side is divided evenly into the nearest whole number of steps."""
 
 
@@ -153,11 +152,11 @@ class PlaneGroup(GroupBase):
 
     shape: Literal["plane"]
     """A flat grid of nx · ny atoms; the atom at (x, y) has the index nx · y + x."""
-    counts: Annotated[tuple[Count, Count], Field(strict=False, title="[nx, ny]")] = Field(examples=[[12, 8]])
+    counts: Annotated[tuple[Count, Count], Field(strict=False, title="[nx, ny]"), Begin([12, 8])]
     """Numbers of atoms [nx, ny]."""
-    step_x: Vector = Field(examples=[[2, 0, 0]])
+    step_x: Annotated[Vector, Begin([2, 0, 0])]
     """From each atom to the next along the grid's x [length]."""
-    step_y: Vector = Field(examples=[[0, 2, 0]])
+    step_y: Annotated[Vector, Begin([0, 2, 0])]
     """From each atom to the next along the grid's y [length]."""
 
 
@@ -166,11 +165,9 @@ class BlockGroup(GroupBase):
 
     shape: Literal["block"]
     """A cubic grid of nx · ny · nz atoms; the atom at (x, y, z) has the index (z · ny + y) · nx + x, x fastest."""
-    counts: Annotated[tuple[Count, Count, Count], Field(strict=False, title="[nx, ny, nz]")] = Field(
-        examples=[[4, 4, 4]]
-    )
+    counts: Annotated[tuple[Count, Count, Count], Field(strict=False, title="[nx, ny, nz]"), Begin([4, 4, 4])]
     """Numbers of atoms [nx, ny, nz]."""
-    spacing: Positive = Field(examples=[1.5])
+    spacing: Annotated[Positive, Begin(1.5)]
     """Distance between neighbours along each axis [length]."""
 
 
@@ -179,9 +176,9 @@ class BallGroup(GroupBase):
 
     shape: Literal["ball"]
     """Atoms on spheres one inside the other, from the one in the middle outwards, each from below to above, z up."""
-    radius: Positive = Field(examples=[3])
+    radius: Annotated[Positive, Begin(3)]
     """Radius of the outermost sphere, on which atoms have their centres [length]."""
-    spacing: Positive = Field(examples=[1])
+    spacing: Annotated[Positive, Begin(1)]
     """Distance between neighbours, nearly [length]: between spheres, and on each of them."""
     hollow: bool = False
     """Whether there are atoms on the outermost sphere only."""
@@ -192,9 +189,7 @@ class AtomsGroup(GroupBase):
 
     shape: Literal["atoms"]
     """Atoms where you write them, numbered as written."""
-    positions: Annotated[tuple[Vector, ...], Field(strict=False, min_length=1)] = Field(
-        examples=[[[0, 0, 0], [2, 0, 0]]]
-    )
+    positions: Annotated[tuple[Vector, ...], Field(strict=False, min_length=1), Begin([[0, 0, 0], [2, 0, 0]])]
     """The centre of each atom [length]."""
     centre: Vector | None = None  # type: ignore[assignment]  # the one shape that may stay where it is
     """Where the centroid of the atoms goes [length]; by default they stay where they are written."""

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from atomsim.scene.language.base import Count, Declaration, Pair, Positive, Rest, Round, Selection, require_one
+from atomsim.scene.language.base import Begin, Count, Declaration, Pair, Positive, Rest, Round, Selection, require_one
 
 AtomPair = Annotated[tuple[Round, Round], Field(strict=False, title="[i, k]")]
 """Two places in selections, counted from 0."""
@@ -59,7 +59,7 @@ class DistanceThresholdBonds(BondBetweenBase):
 
     rule: Literal["distance-threshold"]
     """Pairs with 0 < distance < `threshold`."""
-    threshold: Positive = Field(examples=[1.5])
+    threshold: Annotated[Positive, Begin(1.5)]
     """The distance from which on nothing is bound [length, or grid steps with `metric: grid`]."""
     metric: Literal["space", "grid"] = "space"
     """`space`: distance of the initial positions; `grid`: distance in grid steps inside a plane or block."""
@@ -70,7 +70,7 @@ class ListedBonds(BondBetweenBase):
 
     rule: Literal["pairs"]
     """The pairs listed under `pairs`."""
-    pairs: Annotated[tuple[AtomPair, ...], Field(strict=False, min_length=1)] = Field(examples=[[[0, 1]]])
+    pairs: Annotated[tuple[AtomPair, ...], Field(strict=False, min_length=1), Begin([[0, 1]])]
     """[[i, k], …]: indices into `within`, or the first into A and the second into B of `between: [A, B]`."""
 
 

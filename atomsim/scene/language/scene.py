@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import (
     AxisLetter,
+    Begin,
     Color,
     Colors,
     Count,
@@ -30,7 +31,7 @@ from atomsim.scene.language.silence import Silences
 class Jitter(Declaration):
     """A tiny seeded disturbance of the initial positions that breaks symmetry the same way every time."""
 
-    amplitude: NotNegative = Field(examples=[1e-9])
+    amplitude: Annotated[NotNegative, Begin(1e-9)]
     """Each coordinate moves by a uniform amount within ± this [length]."""
     seed: Round = 1
     """Seed of the random numbers; the same seed gives the same disturbance."""
@@ -82,23 +83,25 @@ def _check_version(value: Any) -> Any:
 class Scene(Declaration):
     """A scene: groups of atoms, what binds them, what may collide, what acts from outside."""
 
-    atomsim: Annotated[Literal[1], BeforeValidator(_check_version)] = Field(examples=[1])
+    atomsim: Annotated[Literal[1], BeforeValidator(_check_version), Begin(1)]
     """The version of the scene language, which is 1."""
     title: str = ""
     """One line that says what the scene shows."""
     description: str = ""
     """As much as you like to say about it."""
-    time_step: Positive = Field(examples=[0.02])
+    time_step: Annotated[Positive, Begin(0.02)]
     """τ, by which velocities move positions in each round [time]."""
-    rounds: Count = Field(examples=[2000])
+    rounds: Annotated[Count, Begin(2000)]
     """Iteration rounds to run."""
     record_every: Count = 10
     """A frame is written at round 0, every so many rounds, and at the last round."""
     jitter: Jitter | None = None
     """A seeded disturbance of the initial positions."""
-    groups: Annotated[Named[Group], Field(min_length=1)] = Field(
-        examples=[{"rope": {"shape": "string", "count": 10, "step": [1, 0, 0]}}]
-    )
+    groups: Annotated[
+        Named[Group],
+        Field(min_length=1),
+        Begin({"rope": {"shape": "string", "count": 10, "step": [1, 0, 0]}}),
+    ]
     """What there is, by name; atoms are numbered in order of declaration."""
     bonds: Named[Bonds] = Field(default_factory=dict)
     """What holds together, by name; one force table each."""

@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 from atomsim.scene.declarations import selecting_keys
+from atomsim.scene.field_docs import examples
 from atomsim.scene.language import Declaration
 from atomsim.scene.language.css_colors import CSS_COLORS
 from atomsim.scene.mistakes.lookalikes import plain
@@ -49,10 +50,9 @@ def begin_with(declaration: type[Declaration], key: str, data: dict[str, Any]) -
         key: the key.
         data: the plain data of the scene.
     """
-    examples, groups = declaration.fields_by_key()[key].examples, data.get("groups")
-    if examples:
-        value = examples[0] if isinstance(examples[0], str) else shown(examples[0])
-        return f"; begin with `{key}: {value}`"
+    groups = data.get("groups")
+    for value in examples(declaration, key):
+        return f"; begin with `{key}: {value if isinstance(value, str) else shown(value)}`"
     if key in selecting_keys(declaration) and isinstance(groups, dict) and groups:
         return f"; the groups are {listed(list(groups))}"
     return ""
