@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from support.running import atoms_at, compiled
 
+from atomsim.core import observables
 from atomsim.core.model import State
+from atomsim.core.numpy_backend.bonds import joined
 from atomsim.core.observables import Observer
 
 
@@ -50,6 +52,34 @@ def test_the_force_is_the_slope_of_the_potential() -> None:
 
         slope = (energy(2.5 + 1e-6) - energy(2.5 - 1e-6)) / 2e-6
         assert slope == pytest.approx(2.5 * (1 - rest**2 / 2.5**2), rel=1e-8)
+
+
+@pytest.mark.parametrize("block", [1, 7, 1000])
+def test_energies_have_the_bits_of_one_sum_over_all_pairs(monkeypatch: pytest.MonkeyPatch, block: int) -> None:
+    """How many pairs are looked at together shows in no bit; where the rest is zero, there is no logarithm."""
+    monkeypatch.setattr(observables, "BLOCK", block)
+    position = np.random.default_rng(1).normal(scale=2.0, size=(12, 3))
+    model, _ = compiled(
+        {"a": atoms_at(*position.round(1).tolist())},
+        time_step=0.3,
+        bonds={
+            "some": {"within": "a", "rule": "distance-threshold", "threshold": 3},
+            "none": {"within": "a", "rule": "pairs", "pairs": [[0, 11]], "rest": 0},
+        },
+        collisions={"c": {"within": "a"}},
+    )
+    expected = 0.0
+    for table in joined(model.bonds):
+        squared = ((position[table.second] - position[table.first]) ** 2).T
+        squared = (squared[0] + squared[1]) + squared[2]
+        rest = table.rest_squared
+        logarithm = rest * np.log(squared / np.where(rest == 0, 1, rest))
+        expected += float(((squared - rest - logarithm) * 0.5).sum())
+    first, second = np.triu_indices(12, 1)
+    apart = ((position[second] - position[first]) ** 2).sum(axis=1)
+    seen = Observer(model).observe(State(0, position, np.zeros((12, 3))))
+    assert seen.potential_energy_bonds == expected / 0.3
+    assert seen.contacts == (apart < 4).sum() > 0
 
 
 def test_an_observer_follows_atoms_that_come_near() -> None:
