@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from atomsim.errors import AtomsimError, BlowUpError, InputError, RunError, SceneError
     from atomsim.scene.loader import LoadedScene, load, loads
     from atomsim.tasks.measure import events, measure
+    from atomsim.tasks.plot import plot
     from atomsim.tasks.render import render, render_frames
     from atomsim.tasks.run import resume, run
     from atomsim.tasks.simulation import SceneSimulation as Simulation
@@ -52,6 +53,7 @@ _HOMES = {
     "load": "atomsim.scene.loader",
     "loads": "atomsim.scene.loader",
     "measure": "atomsim.tasks.measure",
+    "plot": "atomsim.tasks.plot",
     "render": "atomsim.tasks.render",
     "render_frames": "atomsim.tasks.render",
     "resume": "atomsim.tasks.run",
@@ -76,6 +78,7 @@ __all__ = [
     "load",
     "loads",
     "measure",
+    "plot",
     "render",
     "render_frames",
     "resume",

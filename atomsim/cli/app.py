@@ -8,6 +8,7 @@ from atomsim.cli.commands.check import check
 from atomsim.cli.commands.compare import compare
 from atomsim.cli.commands.golden import golden
 from atomsim.cli.commands.measure import measure
+from atomsim.cli.commands.plot import plot
 from atomsim.cli.commands.recover import recover
 from atomsim.cli.commands.render import render
 from atomsim.cli.commands.run import run
@@ -30,7 +31,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (scenes, new, run, render, measure, check, show, compare, verify, recover, schema):
+for command in (scenes, new, run, render, measure, plot, check, show, compare, verify, recover, schema):
     app.command(cls=Command)(command)
 app.command("test", cls=Command)(try_out)
 app.add_typer(golden, name="golden")

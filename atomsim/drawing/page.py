@@ -98,7 +98,7 @@ class _Page:
 
     def _write(self, left: float, baseline: float, words: str, size: float, color: str, room: float) -> None:
         """Write one line, shortened to the room it has; where there is not even room for `…`, nothing."""
-        line = self._printable(words)
+        line = printable(words, self.letters)
         text = self.figure.text(
             left / self.layout.width,
             1.0 - baseline / self.layout.height,
@@ -113,7 +113,8 @@ class _Page:
             text.set_text(f"{shorter}…" if line else "")
             line = shorter
 
-    def _printable(self, words: str) -> str:
-        """Return a text on one line, in letters that the font has."""
-        line = " ".join(words[:_LONGEST_LINE].split())
-        return "".join(letter if self.letters.get_char_index(ord(letter)) else _MISSING for letter in line)
+
+def printable(words: str, letters: FT2Font) -> str:
+    """Return a text on one line, in letters that a font has."""
+    line = " ".join(words[:_LONGEST_LINE].split())
+    return "".join(letter if letters.get_char_index(ord(letter)) else _MISSING for letter in line)

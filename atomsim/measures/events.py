@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -55,3 +56,17 @@ class Event:
     def __str__(self) -> str:
         """Say it in words."""
         return SENTENCES[self.kind].format(*self.names)
+
+
+def in_one_sentence(events: Sequence[Event]) -> str:
+    """Say several events of the same parts at once.
+
+    >>> met = ("ball", "floor")
+    >>> in_one_sentence([Event(8, "first contact", met), Event(8, "bounce", met), Event(8, "separation", met)])
+    'ball touches, bounces off, leaves floor'
+    """
+    parts = [SENTENCES[event.kind].split("{}") for event in events]
+    if len(events) == 1 or any(part[0] or part[-1] or len(part) != 3 for part in parts):
+        return ", ".join(map(str, events))
+    verbs = ", ".join(part[1].strip() for part in parts)
+    return f"{events[0].names[0]} {verbs} {events[0].names[1]}"

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def resolved(
     else:
         texts = [measures] if isinstance(measures, str) else arguments.sequence("measures", measures, MEASURES)
         asked = tuple(map(read_measure, texts))
-    return asked, tuple(_gauge(one, subject) for one in asked)
+    return asked, tuple(_gauge(one, subject, trajectory.path) for one in asked)
 
 
 def read_measure(text: str) -> Measure:
@@ -157,8 +158,8 @@ def frames_at(trajectory: Trajectory, rounds: str | Sequence[int] | None) -> lis
     return sorted(set(places.tolist()))
 
 
-def _gauge(asked: Measure, subject: Subject) -> Gauge:
+def _gauge(asked: Measure, subject: Subject, path: Path) -> Gauge:
     try:
         return gauge_of(asked, subject)
     except (MeasureError, SelectionError) as error:
-        raise InputError(f"{asked}: {error}") from None
+        raise InputError(f"{path}: {asked}: {error}") from None

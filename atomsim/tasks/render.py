@@ -123,7 +123,7 @@ def _row(trajectory: Trajectory, wish: _Wish, *, every: bool) -> Row:
     if wish.camera is not None:
         view = replace(view, azimuth=wish.camera[0], elevation=wish.camera[1])
     return Row(
-        title=_title(trajectory),
+        title=title_of(trajectory),
         frames=Frames(trajectory, places.tolist()),
         rounds=tuple(rounds.tolist()),
         paint=lambda frame: color,
@@ -133,7 +133,7 @@ def _row(trajectory: Trajectory, wish: _Wish, *, every: bool) -> Row:
     )
 
 
-def _title(trajectory: Trajectory) -> str:
+def title_of(trajectory: Trajectory) -> str:
     """Return what stands above the row; a run that blew up is not shown as if nothing had happened."""
     title = trajectory.header.title or Path(trajectory.header.scene_name).name
     if trajectory.end.kind == "blew up":

@@ -88,10 +88,10 @@ def test_a_file_of_others_stays(cli):
     ("arguments", "message"),
     [
         (("ring.h5", "hight of ring"), "there is no measure `hight`; did you mean `height`?"),
-        (("ring.h5", "height of rung"), "height of rung: there is no group `rung`; did you mean `ring`?"),
+        (("ring.h5", "height of rung"), "ring.h5: height of rung: there is no group `rung`; did you mean `ring`?"),
         (
             ("ring.h5", "height of ring[20]"),
-            "height of ring[20]: `ring[20]` is out of range: ring has 20 there, 0 to 19",
+            "ring.h5: height of ring[20]: `ring[20]` is out of range: ring has 20 there, 0 to 19",
         ),
         (("ring.h5", "gap between ring"), "gap is measured as `gap between A and B`"),
         (("ring.h5", "--rounds", "30"), "ring.h5: there is no round 30; it ends at round 20"),

@@ -80,7 +80,7 @@ def test_no_message_of_the_code_is_missing_on_the_page() -> None:
 
 
 @pytest.mark.parametrize(
-    "heading", ["show", "render", "measure", "compare", "verify", "recover", "run", "check", "golden"]
+    "heading", ["show", "render", "measure", "plot", "compare", "verify", "recover", "run", "check", "golden"]
 )
 def test_every_command_has_its_part(heading: str) -> None:
     assert re.search(rf"^##.*{heading}", PAGE, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""A strip has the same bytes in whatever surroundings matplotlib is met, and leaves these as they were."""
+"""Strips and plots have the same bytes in whatever surroundings matplotlib is met, and leave these as they were."""
 
 import os
 import sys
@@ -10,7 +10,7 @@ import matplotlib as mpl
 import pytest
 from support import small_strip as program
 from support.process import finish
-from support.small_strip import EXTENSIONS, small_strip
+from support.small_strip import PICTURES, small_strip
 
 LOUD = """
 font.size: 40
@@ -23,7 +23,7 @@ axes.formatter.use_locale: True
 
 
 def bytes_in(folder: Path) -> list[bytes]:
-    return [(folder / f"strip.{extension}").read_bytes() for extension in EXTENSIONS]
+    return [(folder / name).read_bytes() for name in PICTURES]
 
 
 @pytest.fixture(scope="module")

@@ -100,9 +100,13 @@ def test_observables_are_known_without_reading_a_frame(ring: Path, monkeypatch: 
     [
         ("hight of ring", None, "there is no measure `hight`; did you mean `height`?"),
         ("height of ring[", None, "height of ring[: `ring[` is no selection"),
-        ("height of rong", None, "height of rong: there is no group `rong`; did you mean `ring`?"),
-        ("max strain of bonds.rong", None, "max strain of bonds.rong: there is no `bonds.rong`; did you mean `ring`?"),
-        ("tilt of ring[0]", None, "tilt of ring[0]: `ring[0]` is a single atom"),
+        ("height of rong", None, "ring.h5: height of rong: there is no group `rong`; did you mean `ring`?"),
+        (
+            "max strain of bonds.rong",
+            None,
+            "ring.h5: max strain of bonds.rong: there is no `bonds.rong`; did you mean `ring`?",
+        ),
+        ("tilt of ring[0]", None, "ring.h5: tilt of ring[0]: `ring[0]` is a single atom"),
         ([], None, "measures: needs measures, such as `height of ring`, at least one (got [])"),
         (["energy", 3], None, "measures: needs measures, such as `height of ring`, at least one (got 3)"),
         ("energy", [], "rounds: needs whole numbers, such as [0, 250]"),

@@ -60,8 +60,8 @@ def render(
 
     if frames is not None and output is not None:
         raise InputError("--frames writes pictures into its folder, and no strip; -o does not go with it")
-    angles = None if camera is None else _pair(camera, ",", float, "--camera", "30,20")
-    pixels = None if size is None else _pair(size, "x", int, "--size", "640x480")
+    angles = None if camera is None else pair(camera, ",", float, "--camera", "30,20")
+    pixels = None if size is None else pair(size, "x", int, "--size", "640x480")
     if frames is not None:
         if not force:
             _require_own(frames.glob("*round-*.png"))
@@ -108,7 +108,7 @@ def _notice(notice: Notice) -> None:
     tell(with_remedies(notice))
 
 
-def _pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
+def pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
     """Read two numbers."""
     try:
         first, second = (kind(part) for part in text.lower().split(separator))
