@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from atomsim.core.model import Floats, Frame
-from atomsim.disk import write_whole
+from atomsim.disk import whole_file, write_whole
 from atomsim.drawing.camera import View
 from atomsim.drawing.files import MARK, check_picture
 from atomsim.drawing.framing import fit, is_drawable
@@ -105,12 +105,13 @@ def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None,
     layout = Layout(size, n_frames, tuple(bool(row.title) for row in rows), has_notices=False)
     _check_layout(layout, out)
     panels: list[list[Panel]] = [[] for _ in rows]
-    for number, panel in _drawn(rows, size, report):
-        panels[number].append(panel)
-    if any(panel.notice for row in panels for panel in row):
-        layout = replace(layout, has_notices=True)
-        _check_layout(layout, out)
-    write_whole(out, encode([row.title for row in rows], panels, layout, out.suffix.lower()))
+    with whole_file(out) as file:  # before anything is drawn, which may take long
+        for number, panel in _drawn(rows, size, report):
+            panels[number].append(panel)
+        if any(panel.notice for row in panels for panel in row):
+            layout = replace(layout, has_notices=True)
+            _check_layout(layout, out)
+        file.write(encode([row.title for row in rows], panels, layout, out.suffix.lower()))
 
 
 def _check_layout(layout: Layout, out: Path) -> None:
