@@ -197,21 +197,17 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
 
     Raises:
         InputError: a pipe or a device has that name.
-        RunError: the disk does not take it, or another program has written a file of that name meanwhile; what stands
-            under the name is untouched.
+        RunError: the disk does not take it; what stood under the name before is untouched.
     """
     try:
         target = behind(path)
         check_regular(path)
         if is_protected(target):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-        before = Stamp.of(target)
         temporary = beside(target, f".{os.getpid()}.tmp")
         try:
             with temporary.open("wb") as file:
                 yield file
-            if Stamp.of(target) not in (None, before):
-                raise RunError(f"{path}: another program wrote it meanwhile, and that stays")
             _inherit_access(temporary, target)
             temporary.replace(target)
         except BaseException:

@@ -138,7 +138,13 @@ beside the scene; `LOG.md` in the same folder keeps the reasons.
 | `2000-` | every recorded round from 2000 on; likewise `2000-:100` |
 | `-20` | the last twenty recorded rounds, or all if there are fewer |
 
-The order is kept. A round that the run did not reach is an error, also as the end of a span.
+The order is kept. A round that the run did not reach is an error, also as the end of a span. If neither you nor the
+scene say any, the strip shows the first, the last and four between: as much happens from each to the next. What happens
+is how far groups move and how their speeds change.
+
+`--camera`, `--look-at`, `--width` and `--follow` stand for keys of [`render.camera`](scene-reference.md#camera), and
+take the place of what the scene says. Rows without a direction of their own are seen from the same side, across the
+motion of all of them.
 """,
     "atomsim check": """\
 The word after a number of bonds says how they are computed. All three ways give the same bits; they differ in speed.
@@ -224,7 +230,7 @@ def _scene_reference() -> Iterator[str]:
     yield from _family("## Forces", "forces", docs)
     yield from _section("## Pictures: `render`", ["Render"], docs)
     yield from _section("### Camera", ["Camera"], docs)
-    yield _examples("render")
+    yield _examples("render", "follow")
     yield from _section("## What should happen: `expect`", ["Expectation"], docs)
     yield EXPECTATIONS
     yield _examples("expect")

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias, TypeVar
 
 import typer
 
 from atomsim.core.backend_table import NAMES
 from atomsim.errors import InputError
+
+Part = TypeVar("Part", int, float)
 
 
 def number(option: str, least: float) -> Callable[[str], float]:
@@ -65,6 +67,22 @@ def _meant(text: str) -> str:
     plain = text.replace(",", "").replace("_", "")
     hint = f"; write {plain}" if plain != text and _resolved(plain) is not None else ""
     return f"{hint} (got {readable(text)})"
+
+
+def numbers(text: str, separator: str, kind: type[Part]) -> list[Part]:
+    """Read numbers with a separator between; none if any part is no number."""
+    try:
+        return [kind(part) for part in text.lower().split(separator)]
+    except ValueError:
+        return []
+
+
+def pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
+    """Read two numbers with a separator between."""
+    found = numbers(text, separator, kind)
+    if len(found) != 2:
+        raise InputError(f"{option} needs two numbers, as in {example} (got {text})")
+    return found[0], found[1]
 
 
 def file_to_write(option: str) -> Callable[[str], Path]:

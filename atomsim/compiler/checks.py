@@ -142,10 +142,14 @@ def nothing_collides(path: KeyPath, table: CollisionTable) -> Iterator[Complaint
         yield Complaint(path, "nothing can collide: there are no two different atoms here")
 
 
-def colors_of_nothing(scene: Scene, selections: Selections) -> Iterator[Complaint]:
-    """Check the colours of atoms that do not exist; who draws asks for them again."""
-    for selection in scene.render.colors:
+def pictures_of_nothing(scene: Scene, selections: Selections) -> Iterator[Complaint]:
+    """Check what the picture says of atoms that do not exist; who draws asks for them again."""
+    shown: list[tuple[KeyPath, tuple[str, ...]]]
+    shown = [(("render", "colors", selection), (selection,)) for selection in scene.render.colors]
+    if scene.render.camera.follow is not None:
+        shown.append((("render", "camera", "follow"), scene.render.camera.follow))
+    for path, selection in shown:
         try:
-            selections.atoms((selection,))
+            selections.atoms(selection)
         except SelectionError as error:
-            yield Complaint(("render", "colors", selection), str(error))
+            yield Complaint(path, str(error))

@@ -93,7 +93,7 @@ class _Compiler:
         self._bonds = _all_of([self._bond_table(name, entry) for name, entry in scene.bonds.items()])
         collisions = [self._collision_table(name, entry) for name, entry in scene.collisions.items()]
         forces = [force for name, entry in scene.forces.items() for force in self._forces(name, entry)]
-        self._complain_all(checks.colors_of_nothing(scene, self._selections))
+        self._complain_all(checks.pictures_of_nothing(scene, self._selections))
         self._stop_if_wrong()
         model = Model(
             title=scene.title,

@@ -241,6 +241,16 @@ def _in_one(axes: tuple[int | slice, ...], layout: GroupLayout, expression: str,
     return np.sort(index, axis=None)
 
 
+def atoms_named(scene: Scene, selection: tuple[str, ...]) -> Indices:
+    """Return the atoms of a selection in a scene, ascending, (n,) int64.
+
+    Raises:
+        SelectionError: an unknown group, an index out of range, or nothing selected.
+    """
+    layouts = lay_out(scene)
+    return Selections(layouts, sum(layout.stop - layout.start for layout in layouts.values())).atoms(selection)
+
+
 def _along_axis(axis: int | slice, count: int, expression: str, group: str) -> Indices:
     """Return the places that an index or slice selects of `count`."""
     if isinstance(axis, slice):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from atomsim.core.model import Floats
 from atomsim.errors import InputError
 
 Vector: TypeAlias = tuple[float, float, float]
+
+AZIMUTH, ELEVATION = 30.0, 20.0
+"""Where the viewer stands where nobody said and nothing speaks for another place [degrees]."""
 
 EYE_DISTANCE = 5.0
 """Distance of the eye in widths of the picture: near enough to tell front from back, far enough to keep balls round."""
@@ -61,8 +64,8 @@ class View:
         InputError: a number is not finite or beyond all scenes.
     """
 
-    azimuth: float = 30.0
-    elevation: float = 20.0
+    azimuth: float = AZIMUTH
+    elevation: float = ELEVATION
     up: Literal["x", "y", "z"] = "z"
     look_at: Vector | None = None
     width: float | None = None
@@ -95,6 +98,31 @@ class View:
     def vertical(self) -> Vector:
         """The up axis of the scene as a unit vector."""
         return (float(self.up == "x"), float(self.up == "y"), float(self.up == "z"))
+
+
+def direction_of(
+    name: Literal["front", "side", "top"] | None,
+    azimuth: float | None,
+    elevation: float | None,
+    up: Literal["x", "y", "z"],
+) -> tuple[float, float]:
+    """Return azimuth and elevation of a direction by name, or else these, as usual where they are None [degrees].
+
+    From the front, x points right (y, if x is up); from the side, the viewer stands where that points; from the top,
+    right is as from the front.
+    """
+    front = 0.0 if up == "y" else -90.0
+    match name:
+        case "front":
+            return front, 0.0
+        case "side":
+            return front + 90.0, 0.0
+        case "top":
+            return front, 90.0
+        case None:
+            return AZIMUTH if azimuth is None else azimuth, ELEVATION if elevation is None else elevation
+        case _:
+            assert_never(name)
 
 
 def _turn(degrees: float) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from atomsim.core.model import Floats
+from atomsim.core.model import Floats, Indices
 from atomsim.drawing.camera import EYE_DISTANCE, FARTHEST, Camera, View, is_before_eye, outline
 from atomsim.drawing.hull import hull
 
@@ -27,13 +27,30 @@ def is_drawable(position: Floats) -> NDArray[np.bool_]:
     return np.asarray((np.abs(position) <= FARTHEST).all(axis=1))
 
 
-def fit(view: View, shown: Sequence[Floats], size: tuple[int, int], start: Floats | None = None) -> Camera:
+def centred(position: Floats, atoms: Indices) -> Floats:
+    """Return positions moved so that the centroid of some atoms is at the origin, (n_atoms, 3) float64.
+
+    Atoms that cannot be drawn do not count; if none can, nothing is moved.
+    """
+    middle = position[atoms]
+    middle = middle[is_drawable(middle)]
+    return position - middle.mean(axis=0) if len(middle) else position
+
+
+def fit(
+    view: View,
+    shown: Sequence[Floats],
+    size: tuple[int, int],
+    start: Floats | None = None,
+    scenery: NDArray[np.bool_] | None = None,
+) -> Camera:
     """Return the camera that frames all pictures of a row.
 
     What the view leaves open is chosen so that the whole balls of all atoms that matter fit. An atom matters unless
-    it has *left*: it is farther outside the box of the scene at its start than half the longest side of that box.
+    it has *left*: it is farther outside the box of the scene at its start than the longest side of that box.
     It fell off or flew away, and showing it would turn the rest into dots. If most atoms have left, the scene as a
     whole has moved or spread: then the box of the middle eight tenths of the atoms shown takes the place of the start.
+    Nor does scenery matter, as long as that is not the case.
 
     Args:
         view: what is asked for.
@@ -41,9 +58,10 @@ def fit(view: View, shown: Sequence[Floats], size: tuple[int, int], start: Float
             they need not be in memory together.
         size: width and height of a picture [pixels]; only their ratio matters.
         start: positions at the start of the trajectory [length]; by default the first of `shown`.
+        scenery: atoms that need not be seen, (n_atoms,) bool; by default none.
     """
     origin = Camera.of(view, view.look_at or (0.0, 0.0, 0.0), 1.0)
-    seen = _outermost(origin, shown, shown[0] if start is None else start)
+    seen = _outermost(origin, shown, shown[0] if start is None else start, scenery)
     low, high = seen.min(axis=1), seen.max(axis=1)
     middle = np.zeros(3) if view.look_at else (low + high) / 2
     nearest_width = 2 * float((seen[2] - middle[2]).max()) / EYE_DISTANCE
@@ -72,51 +90,76 @@ def _extent(seen: Floats, convergence: float) -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Box:
-    """A box of balls with the space around it that is half as wide as its longest side."""
+class Box:
+    """A box of balls with as much space around it as its longest side."""
 
     low: Floats
     high: Floats
 
     @classmethod
-    def of(cls, low: Floats, high: Floats) -> _Box:
+    def of(cls, low: Floats, high: Floats) -> Box:
         """Return the box around balls whose centres lie between two corners, each (3,) float64."""
-        reach = (float((high - low).max()) + 2.0) / 2 + 1.0
+        reach = float((high - low).max()) + 3.0  # from the centres; the balls have a radius of 1
         return cls(low - reach, high + reach)
 
-    def near(self, atoms: Floats) -> Floats:
-        """Return those of some atoms that are in the box, (n, 3) float64."""
-        return atoms[((atoms >= self.low) & (atoms <= self.high)).all(axis=1)]
+    @classmethod
+    def around(cls, position: Floats) -> Box:
+        """Return the box around those of some atoms that can be drawn; without any, one around the origin."""
+        atoms = position[is_drawable(position)]
+        return cls.of(atoms.min(axis=0), atoms.max(axis=0)) if len(atoms) else cls.of(np.zeros(3), np.zeros(3))
+
+    def holds(self, position: Floats) -> NDArray[np.bool_]:
+        """Tell which atoms are in the box, (n,) bool."""
+        return np.asarray(((position >= self.low) & (position <= self.high)).all(axis=1))
+
+    def clip(self, position: Floats) -> Floats:
+        """Return atoms with those that are outside moved to its sides, (n, 3) float64; NaN becomes the middle."""
+        middle = (self.low + self.high) / 2
+        return np.clip(np.where(np.isnan(position), middle, position), self.low, self.high)
 
 
-def _outermost(camera: Camera, shown: Sequence[Floats], start: Floats) -> Floats:
-    """Return the atoms to frame, of all rounds together, in camera coordinates: (3, n) float64; at least one.
+def is_scenery(low: Floats, high: Floats) -> NDArray[np.bool_]:
+    """Tell which atoms stay where they are, far from all that moves, (n_atoms,) bool.
 
-    All but those on the hull, seen from above and from the side, go at once: however the camera turns its rays
-    together, no other atom can reach farther to a side.
+    Args:
+        low, high: the least and greatest coordinates of every atom in a run [length], (n_atoms, 3) float64.
     """
-    begun = start[is_drawable(start)]
-    if len(begun):
-        n_shown, n_near, seen = _hull_of_near(camera, shown, _Box.of(begun.min(axis=0), begun.max(axis=0)))
-        if 2 * n_near >= n_shown > 0:
-            return seen
+    moves: NDArray[np.bool_] = (high - low).max(axis=1) > 1.0
+    if not moves.any():
+        return moves
+    box = Box.of(low[moves].min(axis=0), high[moves].max(axis=0))
+    return np.asarray(~(box.holds(low) | moves))
+
+
+def _outermost(camera: Camera, shown: Sequence[Floats], start: Floats, scenery: NDArray[np.bool_] | None) -> Floats:
+    """Return the atoms to frame, of all rounds together, in camera coordinates: (3, n) float64; at least one."""
+    n_shown, n_near, seen = _hull_in(Box.around(start), camera, shown, scenery)
+    if 2 * n_near >= n_shown > 0 and seen.size:
+        return seen
     places = _sample(shown)
     if not len(places):
         return camera.see(np.zeros((1, 3)))
     tenth = len(places) // 10
     in_order = np.sort(places, axis=0)
-    return _hull_of_near(camera, shown, _Box.of(in_order[tenth], in_order[-1 - tenth]))[2]
+    return _hull_in(Box.of(in_order[tenth], in_order[-1 - tenth]), camera, shown, None)[2]
 
 
-def _hull_of_near(camera: Camera, shown: Sequence[Floats], box: _Box) -> tuple[int, int, Floats]:
-    """Return how many atoms are shown, how many of them are in a box, and of those the outermost."""
+def _hull_in(
+    box: Box, camera: Camera, shown: Sequence[Floats], scenery: NDArray[np.bool_] | None
+) -> tuple[int, int, Floats]:
+    """Return how many atoms are shown in all rounds, how many of them in a box, and the outermost of these.
+
+    The outermost are those on the hull, seen from above and from the side: however the rays of sight converge, no
+    other atom reaches farther. All others, and the scenery, go at once.
+    """
     n_shown = n_near = 0
     outermost = np.empty((3, 0))
     for position in shown:
-        atoms = position[is_drawable(position)]
-        near = box.near(atoms)
-        n_shown, n_near = n_shown + len(atoms), n_near + len(near)
-        seen = np.concatenate((outermost, camera.see(near)), axis=1)
+        is_shown = is_drawable(position)
+        is_near = is_shown & box.holds(position)
+        n_shown, n_near = n_shown + int(is_shown.sum()), n_near + int(is_near.sum())
+        atoms = position[is_near if scenery is None else is_near & ~scenery]
+        seen = np.concatenate((outermost, camera.see(atoms)), axis=1)
         outermost = seen[:, np.union1d(hull(seen[0], seen[2]), hull(seen[1], seen[2]))]
     return n_shown, n_near, outermost
 

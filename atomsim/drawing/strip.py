@@ -8,15 +8,21 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from atomsim.core.model import Floats, Frame
-from atomsim.disk import whole_file, write_whole
-from atomsim.drawing.camera import View
+import numpy as np
+from numpy.typing import NDArray
+
+from atomsim.core.model import Floats, Frame, Indices
+from atomsim.disk import write_whole
+from atomsim.drawing.camera import Camera, View
 from atomsim.drawing.files import MARK, check_picture
-from atomsim.drawing.framing import fit, is_drawable
+from atomsim.drawing.framing import centred, fit, is_drawable
 from atomsim.drawing.layout import LARGE, Layout, frame_size
 from atomsim.drawing.page import FORMATS, Panel, encode
 from atomsim.drawing.picture import Pixels, draw
 from atomsim.errors import InputError, RunError
+
+_SURROUNDINGS = 2.0
+"""What is followed is seen with what is around it: the picture is wider by this factor."""
 
 _LARGEST = 16000
 """The longest side that all formats can hold [pixels]."""
@@ -43,6 +49,8 @@ class Row:
         background: red, green and blue from 0 to 1.
         start: atom centres at the start of the trajectory [length], which tell what has left the scene since,
             (n_atoms, 3) float64; by default those of the first frame.
+        scenery: atoms that need not be seen whole, (n_atoms,) bool; by default none.
+        followed: atoms whose centroid stays in the middle of all pictures, (m,) int64; None for a camera that rests.
     """
 
     title: str
@@ -52,26 +60,42 @@ class Row:
     view: View = field(default_factory=View)
     background: tuple[float, float, float] = (0.96, 0.96, 0.97)
     start: Floats | None = None
+    scenery: NDArray[np.bool_] | None = None
+    followed: Indices | None = None
 
     def panels(self, size: tuple[int, int]) -> Iterator[Panel]:
         """Draw one frame after the other; only one is held at a time."""
-        camera = fit(self.view, _Positions(self.frames), size, self.start)
+        camera = self._camera(size)
         for frame, asked in zip(self.frames, self.rounds, strict=True):
-            picture = draw(frame.position, self.paint(frame), camera, size, self.background)
+            picture = draw(self._placed(frame), self.paint(frame), camera, size, self.background)
             yield Panel(frame.round_index, picture, caption(frame, asked), notice(frame))
+
+    def _placed(self, frame: Frame) -> Floats:
+        """Return the atom centres of a frame in the space in which the camera rests, (n_atoms, 3) float64."""
+        return frame.position if self.followed is None else centred(frame.position, self.followed)
+
+    def _camera(self, size: tuple[int, int]) -> Camera:
+        """Return the camera of all pictures: around all that has not left, or around what is followed."""
+        if self.followed is None:
+            return fit(self.view, _Mapped(self.frames, self._placed), size, self.start, self.scenery)
+        followed = self.followed
+        view = replace(self.view, look_at=(0.0, 0.0, 0.0))
+        camera = fit(view, _Mapped(self.frames, lambda frame: self._placed(frame)[followed]), size)
+        return Camera.of(view, camera.centre, self.view.width or _SURROUNDINGS * camera.width)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Positions(Sequence[Floats]):
-    """The atom centres of frames, one at a time."""
+class _Mapped(Sequence[Floats]):
+    """What a function gives of every frame, one at a time."""
 
     frames: Sequence[Frame]
+    function: Callable[[Frame], Floats]
 
     def __len__(self) -> int:
         return len(self.frames)
 
     def __getitem__(self, index: Any) -> Any:
-        return self.frames[index].position
+        return self.function(self.frames[index])
 
 
 def caption(frame: Frame, asked: int) -> str:
@@ -105,13 +129,12 @@ def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None,
     layout = Layout(size, n_frames, tuple(bool(row.title) for row in rows), has_notices=False)
     _check_layout(layout, out)
     panels: list[list[Panel]] = [[] for _ in rows]
-    with whole_file(out) as file:  # before anything is drawn, which may take long
-        for number, panel in _drawn(rows, size, report):
-            panels[number].append(panel)
-        if any(panel.notice for row in panels for panel in row):
-            layout = replace(layout, has_notices=True)
-            _check_layout(layout, out)
-        file.write(encode([row.title for row in rows], panels, layout, out.suffix.lower()))
+    for number, panel in _drawn(rows, size, report):
+        panels[number].append(panel)
+    if any(panel.notice for row in panels for panel in row):
+        layout = replace(layout, has_notices=True)
+        _check_layout(layout, out)
+    write_whole(out, encode([row.title for row in rows], panels, layout, out.suffix.lower()))
 
 
 def _check_layout(layout: Layout, out: Path) -> None:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, BinaryIO
 
 from pydantic import ValidationError
 
 from atomsim import arguments
-from atomsim.errors import SceneError
+from atomsim.errors import InputError, SceneError
 from atomsim.scene.files import read_scene_file, read_scene_stream, read_scene_text
-from atomsim.scene.language import Scene
+from atomsim.scene.language import Camera, Scene
 from atomsim.scene.mistakes.blanks import check_blanks
 from atomsim.scene.mistakes.mistake import Mistake, told
 from atomsim.scene.mistakes.references import check_deletions, check_references, check_silences
@@ -91,6 +91,41 @@ def loads(text: str, name: str = "<scene>", overrides: Iterable[str] = ()) -> Lo
     if text.strip().endswith((".yaml", ".yml", ".json")) and len(text.split()) == 1:
         raise arguments.refused("text", "a scene as text, while atomsim.load takes the name of a file", text)
     return _loaded(read_scene_text(text, name), name, overrides)
+
+
+def camera_with(scene: Scene, changes: Mapping[str, Any]) -> Camera:
+    """Return the camera of a scene with some of its keys changed, for those who look from elsewhere.
+
+    Args:
+        scene: the scene.
+        changes: keys of a camera and their values, as a scene has them. A direction by name takes the place of the
+            angles of the scene, and they of it; so do `follow` and `look_at`.
+
+    Raises:
+        InputError: everything that is wrong with the changes.
+    """
+    said = scene.render.camera.model_dump(exclude_unset=True)
+    for keys, others in (({"view"}, {"azimuth", "elevation"}), ({"look_at"}, {"follow"})):
+        for given, replaced in ((keys, others), (others, keys)):
+            if given & set(changes):
+                said = {key: value for key, value in said.items() if key not in replaced}
+    nothing = {"shape": "atoms", "positions": [[0, 0, 0]]}
+    data = {
+        "atomsim": 1,
+        "time_step": 1,
+        "rounds": 1,
+        "groups": dict.fromkeys(scene.groups, nothing),
+        "render": {"camera": {**said, **changes}},
+    }
+    source = Source()
+    mistakes = check_references(data, source)
+    changed = _validated(data, source, mistakes)
+    if mistakes or changed is None:
+        problems = told(mistakes, source)
+        raise InputError(
+            "\n".join(f"{problem.path.removeprefix('render.')}: {problem.message}" for problem in problems)
+        )
+    return changed.render.camera
 
 
 def _loaded(root: Node, name: str, overrides: Iterable[str]) -> LoadedScene:

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from atomsim.arguments import function, path, paths, real_pair, whole_pair
+from atomsim.arguments import function, path, paths, whole_pair
 from atomsim.compiler.colors import atom_color, rgb
-from atomsim.compiler.selections import SelectionError
+from atomsim.compiler.selections import SelectionError, atoms_named
 from atomsim.core.model import Floats, Indices
-from atomsim.drawing import Report, Row, View, compose, frames_to
+from atomsim.drawing import Report, Row, compose, frames_to
 from atomsim.errors import InputError, Notice
-from atomsim.scene.language import Scene
+from atomsim.scene.language import Camera, Scene
+from atomsim.scene.loader import camera_with
+from atomsim.tasks.cameras import AskedCamera, camera_keys, view_of
+from atomsim.tasks.overview import Overview
 from atomsim.tasks.recompute import broken, laid_out_inside
 from atomsim.tasks.rounds import Latest, Wish, chosen, wishes
 from atomsim.trajectory import Frames, Trajectory
@@ -33,7 +36,7 @@ def render(
     picture: str | os.PathLike[str],
     *,
     rounds: str | Sequence[int] | None = None,
-    camera: tuple[float, float] | None = None,
+    camera: AskedCamera | None = None,
     size: tuple[int, int] | None = None,
     notice: Hear | None = None,
     report: Report | None = None,
@@ -46,8 +49,9 @@ def render(
         trajectories: one trajectory or several.
         picture: the file to write; its extension tells the format: png, jpg, webp, pdf or svg.
         rounds: the rounds to show, as numbers or as a text such as on the command line, `"0-2000:100"`; by default
-            what each scene says, else evenly spread ones.
-        camera: azimuth and elevation of the viewer [degrees], instead of what the scenes say.
+            what each scene says, else the first, the last and four between, closest where most happens.
+        camera: from where it is seen, instead of what the scenes say: azimuth and elevation [degrees], or `front`,
+            `side` or `top`, or a mapping with keys of `render.camera` of a scene.
         size: width and height of a frame [pixels].
         notice: hears what a user should know about where the frames come from.
         report: hears how many pictures of how many are drawn, at the start and after each.
@@ -58,7 +62,7 @@ def render(
     """
     out, wish = path("picture", picture), _Wish.of(rounds, camera, size)
     with _opened(trajectories, notice, report) as found:
-        compose([_row(trajectory, wish, every=False) for trajectory in found], out, wish.size, report)
+        compose(_rows(found, wish, every=False), out, wish.size, report)
 
 
 def render_frames(
@@ -66,7 +70,7 @@ def render_frames(
     folder: str | os.PathLike[str],
     *,
     rounds: str | Sequence[int] | None = None,
-    camera: tuple[float, float] | None = None,
+    camera: AskedCamera | None = None,
     size: tuple[int, int] | None = None,
     notice: Hear | None = None,
     report: Report | None = None,
@@ -80,15 +84,15 @@ def render_frames(
     """
     into, wish = path("folder", folder), _Wish.of(rounds, camera, size)
     with _opened(trajectories, notice, report) as found:
-        return frames_to([_row(trajectory, wish, every=True) for trajectory in found], into, wish.size, report)
+        return frames_to(_rows(found, wish, every=True), into, wish.size, report)
 
 
 @dataclass(frozen=True, slots=True)
 class _Wish:
-    """What the user asks for, checked; None is left to the scenes."""
+    """What the user asks for, checked as far as can be without a scene; None is left to the scenes."""
 
     rounds: tuple[Wish, ...] | None
-    camera: tuple[float, float] | None
+    camera: Mapping[str, Any]
     size: tuple[int, int] | None
 
     @classmethod
@@ -96,7 +100,7 @@ class _Wish:
         """Check the arguments of a function."""
         return cls(
             None if rounds is None else wishes(rounds),
-            None if camera is None else real_pair("camera", camera, "azimuth and elevation, such as (30, 20)"),
+            camera_keys("camera", camera),
             None if size is None else whole_pair("size", size, "width and height in pixels, such as (640, 480)"),
         )
 
@@ -114,22 +118,28 @@ def _opened(trajectories: Paths, notice: Hear | None, report: Report | None) -> 
         yield found
 
 
-def _row(trajectory: Trajectory, wish: _Wish, *, every: bool) -> Row:
+def _rows(trajectories: list[Trajectory], wish: _Wish, *, every: bool) -> list[Row]:
+    """Choose the frames of every trajectory and from where they are seen."""
+    overview = Overview(trajectories)
+    return [_row(trajectory, wish, overview, every=every) for trajectory in trajectories]
+
+
+def _row(trajectory: Trajectory, wish: _Wish, overview: Overview, *, every: bool) -> Row:
     """Choose the frames of one trajectory and from where they are seen."""
     scene = laid_out_inside(trajectory.header, trajectory.path).scene
-    rounds, places = _frames(trajectory, wish.rounds, scene.render.rounds, every=every)
+    camera = camera_with(scene, wish.camera) if wish.camera else scene.render.camera
+    rounds, places = _frames(trajectory, wish.rounds, scene.render.rounds, overview, every=every)
     color = _color(scene, trajectory)
-    view = View(**scene.render.camera.model_dump())
-    if wish.camera is not None:
-        view = replace(view, azimuth=wish.camera[0], elevation=wish.camera[1])
     return Row(
         title=title_of(trajectory),
         frames=Frames(trajectory, places.tolist()),
         rounds=tuple(rounds.tolist()),
         paint=lambda frame: color,
-        view=view,
+        view=view_of(camera, overview.azimuth),
         background=rgb(scene.render.background),
         start=trajectory[0].position,
+        scenery=None if camera.width else overview.scenery(trajectory),
+        followed=_followed(scene, camera, trajectory),
     )
 
 
@@ -149,22 +159,40 @@ def _color(scene: Scene, trajectory: Trajectory) -> Floats:
         raise broken(trajectory.header, trajectory.path, f"render.colors: {error}") from None
 
 
-def _frames(
-    trajectory: Trajectory, asked: tuple[Wish, ...] | None, said: tuple[int, ...] | None, *, every: bool
-) -> tuple[Indices, Indices]:
-    """Return rounds and the places of their frames: as asked for, else all of them or those that the scene says."""
-    recorded = trajectory.rounds
+def _followed(scene: Scene, camera: Camera, trajectory: Trajectory) -> Indices | None:
+    """Return the atoms that stay in the middle of the picture."""
+    if camera.follow is None:
+        return None
     try:
-        return chosen(asked or ((Latest(len(recorded)),) if every else _by_default(recorded, said)), recorded)
+        return atoms_named(scene, camera.follow)
+    except SelectionError as error:
+        raise InputError(f"{trajectory.path}: camera.follow: {error}") from None
+
+
+def _frames(
+    trajectory: Trajectory,
+    asked: tuple[Wish, ...] | None,
+    said: tuple[int, ...] | None,
+    overview: Overview,
+    *,
+    every: bool,
+) -> tuple[Indices, Indices]:
+    """Return rounds and the places of their frames: as asked for, all of them, as the scene says, or the telling."""
+    recorded = trajectory.rounds
+    if asked is None and every:
+        asked = (Latest(len(recorded)),)
+    elif asked is None and said is not None:
+        asked = _reached(said, int(recorded[-1]))
+    if asked is None:
+        places = overview.telling(trajectory, N_FRAMES)
+        return recorded[places], places
+    try:
+        return chosen(asked, recorded)
     except InputError as error:
         raise InputError(f"{trajectory.path}: {error}") from None
 
 
-def _by_default(recorded: Indices, said: tuple[int, ...] | None) -> tuple[int, ...]:
-    """Return what the scene says as far as the run went, else evenly spread rounds."""
-    last = int(recorded[-1])
-    if said is not None:
-        reached = tuple(round_index for round_index in said if round_index <= last)
-        return reached if len(reached) == len(said) or last in reached else (*reached, last)
-    places = sorted({place * (len(recorded) - 1) // (N_FRAMES - 1) for place in range(N_FRAMES)})
-    return tuple(recorded[places].tolist())
+def _reached(said: tuple[int, ...], last: int) -> tuple[int, ...]:
+    """Return the rounds that a scene says as far as the run went."""
+    reached = tuple(round_index for round_index in said if round_index <= last)
+    return reached if len(reached) == len(said) or last in reached else (*reached, last)

@@ -41,7 +41,7 @@ def words(cli, *arguments: str) -> list[str]:
 
 def picture(cli, *arguments: str) -> np.ndarray:
     """Return the pixels of the single frame that a command draws, (72, 96, 3)."""
-    folder = Path(f"frames of {arguments[0]}")
+    folder = Path(f"frames of {' '.join(arguments)}")
     assert cli("render", *arguments, "--frames", str(folder), "--size", "96x72").code == 0
     [file] = folder.iterdir()
     with Image.open(file) as image:
@@ -73,13 +73,93 @@ def test_frames_and_a_strip_are_two_commands(cli, record):
     assert not Path("film").exists()
 
 
-def test_the_strip_is_spread_evenly_over_the_frames_where_nobody_chose(cli, record):
+def test_the_strip_is_spread_evenly_where_nobody_chose_and_nothing_happens(cli, record):
     record("out.h5")
-    assert words(cli, "out.h5") == ["bricks.yaml", *(f"round {number}" for number in (0, 8, 16, 24, 32, 42))]
+    assert words(cli, "out.h5") == ["bricks.yaml", *(f"round {number}" for number in (0, 8, 16, 28, 36, 42))]
     record("long.h5", "rounds=300")
     assert words(cli, "long.h5")[1:] == [f"round {number}" for number in (0, 60, 120, 180, 240, 300)]
     record("short.h5", "rounds=9")
     assert words(cli, "short.h5") == ["bricks.yaml", "round 0", "round 4", "round 8", "round 9"]
+
+
+LATE = ("rounds=400", "forces={kick: {kind: push, acts_on: brick, impulse: [0.5, 0, 0], from_round: 340}}")
+
+
+def test_the_strip_shows_where_something_happens(cli, record):
+    record("late.h5", *LATE)
+    shown = [int(line.removeprefix("round ")) for line in words(cli, "late.h5")[1:]]
+    assert (shown[0], shown[-1], len(shown)) == (0, 400, 6)
+    assert len([number for number in shown if number >= 340]) >= 3
+
+
+def test_rows_show_the_same_rounds_from_the_same_side(cli, record):
+    """Two runs are compared column by column, so what happens in one of them chooses for both."""
+    record("late.h5", *LATE)
+    record("still.h5", "rounds=400")
+    both = words(cli, "still.h5", "late.h5")
+    assert both[1:7] == both[8:14] != words(cli, "still.h5")[1:]
+    alone, beside = (picture(cli, name, "--rounds", "0") for name in ("late.h5", "still.h5"))
+    assert (alone != beside).any()
+    assert cli("render", "late.h5", "still.h5", "--rounds", "0", "--frames", "both", "--size", "96x72").code == 0
+    one, other = (Image.open(path) for path in sorted(Path("both").iterdir()))
+    assert (np.asarray(one) == np.asarray(other)).all()
+
+
+def test_motion_is_seen_across_unless_somebody_says_otherwise(cli, record):
+    moving = ("groups.brick.velocity=[3, 0, 0]", "render={camera: {look_at: [4, 4, 0], width: 30}}")
+    record("moving.h5", *moving)
+    across = picture(cli, "moving.h5", "--rounds", "0")
+    assert (across == picture(cli, "moving.h5", "--rounds", "0", "--camera=-70,20")).all()
+    record("said.h5", moving[0], "render={camera: {azimuth: 30, look_at: [4, 4, 0], width: 30}}")
+    assert (picture(cli, "said.h5", "--rounds", "0") != across).any()
+    record("side.h5", moving[0], "render={camera: {view: side, look_at: [4, 4, 0], width: 30}}")
+    side = picture(cli, "side.h5", "--rounds", "0")
+    assert (side == picture(cli, "moving.h5", "--rounds", "0", "--camera", "Side")).all()
+    assert (side == picture(cli, "said.h5", "--rounds", "0", "--camera", "0,0")).all()
+
+
+def test_where_to_look_and_how_much_to_see(cli, record):
+    record("said.h5", "render={camera: {azimuth: 10, elevation: 30, look_at: [3, 3, 1], width: 25}}")
+    record("asked.h5", "render={camera: {azimuth: 10, elevation: 30}}")
+    asked = ("--look-at", "3,3,1", "--width", "25", "--rounds", "0")
+    assert (picture(cli, "asked.h5", *asked) == picture(cli, "said.h5", "--rounds", "0")).all()
+
+
+def test_a_group_is_followed(cli, record):
+    """The brick flies on, and stays where it is in the picture; so the scene may say it, too."""
+    flying = "groups.brick.velocity=[0, 3, 0]"
+    record("out.h5", flying)
+    view = ("--follow", "brick", "--camera", "top", "--width", "12")
+    for number in (0, 42):
+        seen = picture(cli, "out.h5", *view, "--rounds", str(number)).astype(int)
+        row, column = np.nonzero(seen[:, :, 0] > seen[:, :, 2] + 30)
+        assert (row.mean(), column.mean()) == (pytest.approx(36, abs=2), pytest.approx(48, abs=2))
+    record("said.h5", flying, "render={camera: {follow: brick, view: top, width: 12}}")
+    assert (picture(cli, "said.h5", "--rounds", "42") == seen).all()
+    assert (picture(cli, "said.h5", "--rounds", "42", "--look-at", "0,0,0") != seen).any()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--camera", "back"), 'camera.view: needs front, side or top (got "back")'),
+        (("--camera", "30"), "--camera needs two numbers, as in 30,20; or front, side or top (got 30)"),
+        (("--look-at", "brick"), "--look-at needs three numbers, as in 0,0,5 (got brick)"),
+        (("--look-at", "1,2"), "--look-at needs three numbers, as in 0,0,5 (got 1,2)"),
+        (("--width", "wide"), "--width needs a number of 0 or more (got wide)"),
+        (("--width", "0"), "camera.width: needs a number above 0 (got 0)"),
+        (("--follow", "brik"), "camera.follow: there is no group `brik`; did you mean `brick`?"),
+        (("--follow", "brick[7]"), "out.h5: camera.follow: `brick[7]` is out of range: brick has 1 there, 0 to 0"),
+        (
+            ("--follow", "brick", "--look-at", "0,0,0"),
+            "camera: `follow` chooses what to look at; leave it or `look_at` out",
+        ),
+    ],
+)
+def test_cameras_that_will_not_do(cli, record, arguments, message):
+    record("out.h5")
+    result = cli("render", "out.h5", *arguments)
+    assert (result.code, result.out, result.err) == (2, "", message + "\n")
 
 
 def test_the_strip_shows_what_the_scene_chose_as_far_as_the_run_went(cli, record):

@@ -149,7 +149,10 @@ def test_a_setting_that_is_to_blame_has_no_line(cli):
         (("render", "scenes/rods.yaml"), "scenes/rods.yaml: is a scene, not a trajectory of atomsim"),
         (("render", "a.h5", "--rounds", "1,x"), "rounds are written 0,250,500 or 0-2000:100 (from, to, every) or -20"),
         (("render", "a.h5", "--rounds", "-0"), "rounds are written 0,250,500 or 0-2000:100 (from, to, every) or -20"),
-        (("render", "a.h5", "--camera", "30"), "--camera needs two numbers, as in 30,20 (got 30)"),
+        (
+            ("render", "a.h5", "--camera", "30"),
+            "--camera needs two numbers, as in 30,20; or front, side or top (got 30)",
+        ),
         (("render", "a.h5", "--size", "640"), "--size needs two numbers, as in 640x480 (got 640)"),
         (("show", "scenes/rods.yaml"), "scenes/rods.yaml: is a scene, not a trajectory of atomsim"),
         (("compare", "a.h5", "b.h5"), "a.h5: no such file"),

@@ -34,6 +34,7 @@ EXTRA_EXAMPLES = {
     "spin",
     "jitter",
     "render",
+    "follow",
     "selections",
     "expect",
     "extends",

@@ -171,6 +171,23 @@ def test_atoms_that_cannot_be_drawn_are_counted(tmp_path):
     assert len(pixels_of(tmp_path / "strip.png")) == Layout(SIZE, (2,), (False,), True).height
 
 
+def test_what_is_followed_stays_in_the_middle():
+    """Twelve atoms move by a radius from frame to frame; followed, they are drawn at the same place each time."""
+    resting, followed = pictures(row()), pictures(row(followed=np.arange(12)))
+    assert not (resting[0] == resting[2]).all()
+    assert (followed[0] == followed[1]).all()
+    assert (followed[0] == followed[2]).all()
+
+
+def test_what_is_followed_is_seen_with_what_is_around_it():
+    """The camera is the same however far the rest of the scene reaches, and shows twice what is followed."""
+    part = row(n_frames=1, followed=np.arange(3), view=View(10, 40, width=None))
+    alone = row(n_frames=1, followed=np.arange(12), view=View(10, 40))
+    assert part._camera(SIZE).width < alone._camera(SIZE).width
+    assert alone._camera(SIZE).width == pytest.approx(2 * row(n_frames=1)._camera(SIZE).width, rel=0.1)
+    assert row(n_frames=1, followed=np.arange(3), view=View(width=17.0))._camera(SIZE).width == 17.0
+
+
 def test_every_frame_has_the_colors_of_its_round():
     """As a measure that changes would have them."""
     shown = row(paint=lambda frame: BROWN if frame.round_index else BROWN[:, ::-1])

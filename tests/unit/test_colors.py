@@ -28,6 +28,12 @@ def test_colors_of_selections_cover_groups_and_each_other():
     assert color.tolist() == [[1, 1, 1], [0, 1, 0], [0, 0, 0], [0, 0, 0]]
 
 
+def test_a_camera_that_follows_atoms_that_do_not_exist_is_a_mistake():
+    scene = scene_of(GROUPS, render={"camera": {"follow": ["right", "left[3]"]}})
+    with pytest.raises(SceneError, match=r"render\.camera\.follow: `left\[3\]` is out of range"):
+        compile_scene(LoadedScene(scene))
+
+
 @pytest.mark.parametrize(
     ("colors", "expected"),
     [

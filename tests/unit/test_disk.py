@@ -103,22 +103,3 @@ def test_a_write_protected_file_stays(path, monkeypatch):
     with pytest.raises(RunError, match=r"a\.png: cannot be written: Permission denied$"):
         write_whole(path, b"new")
     assert path.read_bytes() == b"old"
-
-
-@pytest.mark.parametrize("exists", [True, False])
-def test_what_another_program_writes_meanwhile_stays(tmp_path, exists):
-    path = tmp_path / "a.png"
-    if exists:
-        path.write_bytes(b"old")
-    with pytest.raises(RunError) as caught, whole_file(path):
-        path.write_bytes(b"theirs")
-    assert str(caught.value) == f"{path}: another program wrote it meanwhile, and that stays"
-    assert path.read_bytes() == b"theirs"
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_what_another_program_removes_meanwhile_is_written_all_the_same(path):
-    with whole_file(path) as file:
-        path.unlink()
-        file.write(b"new")
-    assert path.read_bytes() == b"new"

@@ -5,7 +5,17 @@ import itertools
 import numpy as np
 import pytest
 
-from atomsim.drawing.camera import CLOSEST_EYE, EYE_DISTANCE, Camera, View, cross, dot, is_before_eye, outline
+from atomsim.drawing.camera import (
+    CLOSEST_EYE,
+    EYE_DISTANCE,
+    Camera,
+    View,
+    cross,
+    direction_of,
+    dot,
+    is_before_eye,
+    outline,
+)
 from atomsim.errors import InputError
 
 ANGLES = list(itertools.product((0.0, 30.0, -90.0, 200.0, 1e6), (0.0, 20.0, 90.0, -35.0), "xyz"))
@@ -40,6 +50,32 @@ def test_azimuth_counts_from_the_axis_after_up(azimuth, up, right, back):
 
 def test_elevation_lifts_the_viewer():
     assert View(0.0, 90.0).axes()[2] == pytest.approx((0, 0, 1), abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("name", "up", "right", "back"),
+    [
+        ("front", "z", (1, 0, 0), (0, -1, 0)),
+        ("side", "z", (0, 1, 0), (1, 0, 0)),
+        ("top", "z", (1, 0, 0), (0, 0, 1)),
+        ("front", "y", (1, 0, 0), (0, 0, 1)),
+        ("side", "y", (0, 0, -1), (1, 0, 0)),
+        ("top", "y", (1, 0, 0), (0, 1, 0)),
+        ("front", "x", (0, 1, 0), (0, 0, -1)),
+        ("side", "x", (0, 0, 1), (0, 1, 0)),
+        ("top", "x", (0, 1, 0), (1, 0, 0)),
+    ],
+)
+def test_directions_by_name(name, up, right, back):
+    axes = View(*direction_of(name, None, None, up), up).axes()
+    assert axes[0] == pytest.approx(right, abs=1e-11)
+    assert axes[2] == pytest.approx(back, abs=1e-11)
+
+
+def test_directions_without_a_name_are_as_said_or_as_usual():
+    assert direction_of(None, None, None, "z") == (30.0, 20.0)
+    assert direction_of(None, 70.0, None, "y") == (70.0, 20.0)
+    assert direction_of(None, None, -5.0, "x") == (30.0, -5.0)
 
 
 def test_see_and_place_are_inverse():

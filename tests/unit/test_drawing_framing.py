@@ -1,10 +1,12 @@
 """What a row of pictures shows: everything that matters, and not what has left."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
 from atomsim.drawing.camera import View, outline
-from atomsim.drawing.framing import MARGIN, fit, is_drawable
+from atomsim.drawing.framing import MARGIN, centred, fit, is_drawable, is_scenery
 
 SIZE = (400, 300)
 
@@ -65,6 +67,56 @@ def test_two_halves_that_fly_apart_are_both_shown():
     start = np.vstack([string - 3 * aside, string + 3 * aside])
     apart = np.vstack([string - 60 * aside, string + 60 * aside])
     assert max(reach(fit(View(), [apart], SIZE, start), apart)) <= 1
+
+
+def floor_and_ball(height):
+    column, row = np.meshgrid(np.arange(200.0) - 100, np.arange(200.0) - 100)
+    floor = np.stack([column.ravel(), row.ravel(), np.zeros(column.size)], axis=1)
+    return np.concatenate([floor, [[3.0, 4.0, height]]])
+
+
+def test_scenery_is_what_stays_far_from_all_that_moves():
+    low, high = floor_and_ball(2.0), floor_and_ball(12.0)
+    scenery = is_scenery(low, high)
+    far = np.abs(low[:, :2] - [3.0, 4.0]).max(axis=1) > 13
+    assert (scenery == far).all()
+    assert not is_scenery(low, low).any()  # where nothing moves, nothing is scenery
+    assert not is_scenery(low[:1], high[:1]).any()
+
+
+def test_scenery_does_not_shrink_the_rest():
+    shown = [floor_and_ball(12.0), floor_and_ball(2.0)]
+    scenery = is_scenery(shown[1], shown[0])
+    camera = fit(View(), shown, SIZE, scenery=scenery)
+    near = np.concatenate([atoms[~scenery] for atoms in shown])
+    assert max(reach(camera, near)) == pytest.approx(1 / MARGIN, rel=1e-3)
+    assert fit(View(), shown, SIZE).width > 4 * camera.width
+    everything = np.ones(len(scenery), dtype=bool)
+    assert fit(View(), shown, SIZE, scenery=everything) == fit(View(), shown, SIZE)
+
+
+def test_rounds_are_taken_one_at_a_time_and_framed_as_if_all_were_there():
+    """The outermost atoms of each round are enough."""
+
+    class Shown(Sequence):
+        def __len__(self):
+            return 7
+
+        def __getitem__(self, index):
+            return np.random.default_rng(range(7)[index]).normal(size=(500, 3)) * [5, 3, 2]
+
+    whole = np.concatenate(list(Shown()))
+    for view in (View(), View(70, 40, "x"), View(look_at=(1.0, 2.0, 3.0)), View(width=9.0)):
+        streamed = fit(view, Shown(), SIZE)
+        at_once = fit(view, [whole], SIZE, Shown()[0])
+        assert (streamed.centre, streamed.width) == (pytest.approx(at_once.centre), pytest.approx(at_once.width))
+
+
+def test_positions_are_centred_on_some_atoms():
+    atoms = np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 1.0], [9.0, 9.0, 9.0], [np.nan, 0.0, 0.0]])
+    moved = centred(atoms, np.array([0, 1, 3]))
+    np.testing.assert_array_equal(moved[:3], [[-1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [7.0, 7.0, 7.0]])
+    np.testing.assert_array_equal(centred(atoms, np.array([3])), atoms)
 
 
 def test_width_and_look_at_are_obeyed():

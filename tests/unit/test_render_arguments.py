@@ -20,6 +20,8 @@ def out(tmp_path, monkeypatch) -> str:
     return "out.h5"
 
 
+CAMERA = "azimuth and elevation, such as (30, 20), or front, side or top, or keys and values as in a scene"
+
 MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"trajectories": []}, "trajectories: needs the name of a file, or a list of such names (got [])"),
     ({"trajectories": 5}, "trajectories: needs the name of a file, or a list of such names (got 5)"),
@@ -41,10 +43,21 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"size": "640x480"}, "size: needs width and height in pixels, such as (640, 480) (got '640x480')"),
     ({"size": (0, 48)}, "a frame must be from 16 to 4096 pixels wide and high (got 0x48)"),
     ({"size": (-64, 48)}, "a frame must be from 16 to 4096 pixels wide and high (got -64x48)"),
-    ({"camera": 30}, "camera: needs azimuth and elevation, such as (30, 20) (got 30)"),
-    ({"camera": (30, 20, 10)}, "camera: needs azimuth and elevation, such as (30, 20) (got (30, 20, 10))"),
-    ({"camera": (None, 20)}, "camera: needs azimuth and elevation, such as (30, 20) (got (None, 20))"),
-    ({"camera": (np.nan, 20)}, "camera: azimuth must be a finite number of degrees (got nan)"),
+    ({"camera": 30}, f"camera: needs {CAMERA} (got 30)"),
+    ({"camera": (30, 20, 10)}, f"camera: needs {CAMERA} (got (30, 20, 10))"),
+    ({"camera": (None, 20)}, f"camera: needs {CAMERA} (got (None, 20))"),
+    ({"camera": {1: 2}}, f"camera: needs {CAMERA} (got {{1: 2}})"),
+    ({"camera": (np.nan, 20)}, "camera.azimuth: needs a finite number (got .nan)"),
+    ({"camera": "back"}, 'camera.view: needs front, side or top (got "back")'),
+    ({"camera": {"widht": 3}}, "camera.widht: unknown key `widht`; did you mean `width`?"),
+    ({"camera": {"width": -3}}, "camera.width: needs a number above 0 (got -3)"),
+    ({"camera": {"look_at": "ball"}}, 'camera.look_at: needs [x, y, z] (got "ball")'),
+    ({"camera": {"look_at": [0, 0, 2e9]}}, "camera: look_at must be within ±1e+09 (got [0.0, 0.0, 2000000000.0])"),
+    ({"camera": {"follow": "bell"}}, "camera.follow: there is no group `bell`; did you mean `ball`?"),
+    ({"camera": {"follow": "ball[1]"}}, "out.h5: camera.follow: `ball[1]` is out of range: ball has 1 there, 0 to 0"),
+    ({"camera": {"follow": "ball", "look_at": [0, 0, 0]}}, "camera: `follow` chooses what to look at; leave it or"),
+    ({"camera": {"view": "side", "azimuth": 3}}, "camera: `view` stands for azimuth and elevation; leave one or"),
+    ({"camera": {"up": "w", "width": "wide"}}, 'camera.up: needs x, y or z (got "w")\ncamera.width: needs a number ('),
     ({"notice": "loud"}, "notice: needs a function (got 'loud')"),
     ({"report": 1}, "report: needs a function (got 1)"),
 ]
@@ -70,6 +83,11 @@ def test_what_will_do(out):
     atomsim.render((out,), "two.png", rounds="0,20", size=(32, 24), camera=(30, 20))
     atomsim.render([out], "three.png", rounds=range(0, 21, 20), size=[32, 24], camera=[30, 20])
     assert Path("one.png").read_bytes() == Path("two.png").read_bytes() == Path("three.png").read_bytes()
+    side = {"view": "side", "look_at": np.array([0.0, 0, 0]), "width": np.float64(9)}
+    atomsim.render(out, "four.png", rounds=[0], size=(32, 24), camera=side)
+    exact = {"azimuth": 0, "elevation": 0, "look_at": [0, 0, 0], "width": 9.0}
+    atomsim.render(out, "five.png", rounds=[0], size=(32, 24), camera=exact)
+    assert Path("four.png").read_bytes() == Path("five.png").read_bytes()
     heard: list[tuple[int, int]] = []
     files = atomsim.render_frames(out, "film", rounds="-2", size=(32, 24), report=lambda *count: heard.append(count))
     assert [file.name for file in files] == ["round-10.png", "round-20.png"]

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from atomsim.cli.commands.render import pair
-from atomsim.cli.options import output
+from atomsim.cli.options import output, pair
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained

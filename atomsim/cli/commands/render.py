@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any
 
 import typer
 
-from atomsim.cli.options import file_to_write, output
+from atomsim.cli.options import file_to_write, number, numbers, output, pair
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
 from atomsim.errors import InputError, Notice, Remedy
-
-Part = TypeVar("Part", int, float)
 
 Output = Annotated[
     Path | None, output("PICTURE", "The picture to write: png, jpg, webp, pdf or svg.  [default: OUT with .png]")
@@ -42,7 +40,20 @@ def render(
         ),
     ] = None,
     camera: Annotated[
-        str | None, typer.Option(metavar="AZ,EL", help="Direction and height of the viewer [degrees].")
+        str | None,
+        typer.Option(metavar="AZ,EL", help="Direction and height of the viewer [degrees], or front, side or top."),
+    ] = None,
+    look_at: Annotated[
+        str | None, typer.Option(metavar="X,Y,Z", help="The point in the middle of the picture [length].")
+    ] = None,
+    width: Annotated[
+        float | None,
+        typer.Option(
+            metavar="W", parser=number("--width", 0.0), help="What the picture shows from left to right [length]."
+        ),
+    ] = None,
+    follow: Annotated[
+        str | None, typer.Option(metavar="GROUP", help="Atoms that stay in the middle of the picture.")
     ] = None,
     size: Annotated[str | None, typer.Option(metavar="WxH", help="Size of one frame [pixels].")] = None,
     frames: Annotated[
@@ -60,7 +71,7 @@ def render(
 
     if frames is not None and output is not None:
         raise InputError("--frames writes pictures into its folder, and no strip; -o does not go with it")
-    angles = None if camera is None else pair(camera, ",", float, "--camera", "30,20")
+    asked = _camera(camera, look_at, width, follow)
     pixels = None if size is None else pair(size, "x", int, "--size", "640x480")
     if frames is not None:
         if not force:
@@ -70,7 +81,7 @@ def render(
                 trajectories,
                 frames,
                 rounds=rounds,
-                camera=angles,
+                camera=asked,
                 size=pixels,
                 notice=_notice,
                 report=progress.report,
@@ -86,7 +97,7 @@ def render(
             trajectories,
             picture,
             rounds=rounds,
-            camera=angles,
+            camera=asked,
             size=pixels,
             notice=_notice,
             report=progress.report,
@@ -108,10 +119,15 @@ def _notice(notice: Notice) -> None:
     tell(with_remedies(notice))
 
 
-def pair(text: str, separator: str, kind: type[Part], option: str, example: str) -> tuple[Part, Part]:
-    """Read two numbers."""
-    try:
-        first, second = (kind(part) for part in text.lower().split(separator))
-    except ValueError:
-        raise InputError(f"{option} needs two numbers, as in {example} (got {text})") from None
-    return first, second
+def _camera(direction: str | None, look_at: str | None, width: float | None, follow: str | None) -> dict[str, Any]:
+    """Return the keys of a camera that are asked for."""
+    asked: dict[str, Any] = {"view": None, "look_at": None, "width": width, "follow": follow}
+    if direction is not None and direction.strip().isalpha():
+        asked["view"] = direction.strip().lower()
+    elif direction is not None:
+        asked["azimuth"], asked["elevation"] = pair(direction, ",", float, "--camera", "30,20; or front, side or top")
+    if look_at is not None:
+        asked["look_at"] = numbers(look_at, ",", float)
+        if len(asked["look_at"]) != 3:
+            raise InputError(f"--look-at needs three numbers, as in 0,0,5 (got {look_at})")
+    return {key: value for key, value in asked.items() if value is not None}

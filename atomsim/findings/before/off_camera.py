@@ -9,7 +9,7 @@ import numpy as np
 
 from atomsim.core.diagnosis.outlook import Outlook
 from atomsim.core.model import Floats, GroupSpan, Indices
-from atomsim.drawing.camera import Camera, View, is_before_eye
+from atomsim.drawing.camera import Camera, View, direction_of, is_before_eye
 from atomsim.errors import InputError
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
@@ -25,13 +25,15 @@ SLACK = 1.2
 def off_camera(subject: Subject) -> Iterator[Symptom]:
     """Find moving groups that are in the picture in one of the rounds shown at most, where a camera is written.
 
-    What cannot be foreseen, as after a first contact, is left to be judged after the run.
+    What cannot be foreseen, as after a first contact, is left to be judged after the run. The usual direction stands
+    for one that the run will choose.
     """
     written = subject.scene.render.camera
     if written.look_at is None or written.width is None:
         return
     try:
-        view = View(**written.model_dump())
+        direction = direction_of(written.view, written.azimuth, written.elevation, written.up)
+        view = View(*direction, written.up, written.look_at, written.width)
     except InputError:
         return  # who draws complains of numbers beyond all scenes
     camera = Camera.of(view, written.look_at, written.width)

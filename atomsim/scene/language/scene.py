@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from atomsim.scene.language.base import (
@@ -19,6 +19,7 @@ from atomsim.scene.language.base import (
     Number,
     Positive,
     Round,
+    Selection,
     Vector,
 )
 from atomsim.scene.language.expectations import Expectation
@@ -37,35 +38,64 @@ class Jitter(Declaration):
     """Seed of the random numbers; the same seed gives the same disturbance."""
 
 
+View = Literal["front", "side", "top"]
+"""A direction to look from, by name."""
+
+
 class Camera(Declaration):
     """From where and how large the strip shows the scene.
 
-    With z up, azimuth 0 is a viewer on +x and 90 one on +y; with y up, on +z and +x; with x up, on +y and +z.
+    With z up, azimuth 0 is a viewer on +x and 90 one on +y; with y up, on +z and +x; with x up, on +y and +z. Seen from
+    the front, x points right (y, if x is up); from the side, the viewer stands where that points; from the top, right
+    is as from the front. Where nothing says the azimuth, the main horizontal motion crosses the picture from left to
+    right, at most 35 degrees aslant; without such a motion it is 30.
 
     What `look_at` and `width` leave open is chosen so that all atoms of the rounds shown fit, but for those that have
-    left: an atom has left when it is farther outside the box of the scene at its start than half the longest side of
-    that box. If most atoms have left, the box of the middle eight tenths of the atoms shown takes its place.
+    left: an atom has left when it is farther outside the box of the scene at its start than the longest side of that
+    box. If most atoms have left, the box of the middle eight tenths of the atoms shown takes its place. Nor need those
+    fit that stay where they are, farther outside the box of all that moves than its longest side.
     """
 
-    azimuth: Number = 30.0
+    view: View | None = None
+    """A direction by name, in place of azimuth and elevation."""
+    azimuth: Number | None = None
     """Direction of the viewer about the up axis [degrees]; 0 is on the axis that follows `up` in x, y, z, x."""
-    elevation: Number = 20.0
-    """Height of the viewer above the horizontal [degrees]."""
+    elevation: Number | None = None
+    """Height of the viewer above the horizontal [degrees]; by default 20."""
     up: AxisLetter = "z"
     """The axis that points up in the picture."""
     look_at: Vector | None = None
     """The point in the middle of the picture [length]; by default the middle of the atoms that fit."""
     width: Positive | None = None
     """The visible width [length]; by default all atoms shown fit that have not left the scene."""
+    follow: Selection | None = None
+    """Atoms that stay in the middle of the picture, in place of `look_at`; by default nothing is followed."""
+
+    @model_validator(mode="after")
+    def _one_way_to_say_it(self) -> Camera:
+        if self.view is not None and (self.azimuth is not None or self.elevation is not None):
+            raise PydanticCustomError("together", "`view` stands for azimuth and elevation; leave one or the other out")
+        if self.follow is not None and self.look_at is not None:
+            raise PydanticCustomError("together", "`follow` chooses what to look at; leave it or `look_at` out")
+        return self
+
+
+def _named_view(value: Any) -> Any:
+    return {"view": value} if isinstance(value, str) and value in get_args(View) else value
+
+
+_CAMERA_SCHEMA = {"anyOf": [{"enum": list(get_args(View))}, {"$ref": "#/$defs/Camera"}]}
 
 
 class Render(Declaration):
     """How `atomsim render` shows the trajectory; everything has a default."""
 
     rounds: Annotated[tuple[Round, ...], Field(strict=False, min_length=1)] | None = None
-    """The rounds that make the strip; by default six evenly spread ones."""
-    camera: Camera = Field(default_factory=Camera)
-    """From where the scene is seen."""
+    """The rounds that make the strip; by default the first, the last and four between, closest where most happens."""
+    camera: Annotated[Camera, BeforeValidator(_named_view), WithJsonSchema(_CAMERA_SCHEMA)] = Field(
+        default_factory=Camera
+    )
+    """From where the scene is seen; `side` alone is `{view: side}`."""
     colors: Colors = Field(default_factory=dict)
     """Colours by selection, such as `ring[0:5]: gold`. They cover those of groups, later ones earlier: `all` first."""
     background: Color = "#f5f5f7"

@@ -30,7 +30,7 @@ def check_references(data: dict[str, Any], source: Source) -> list[Mistake]:
     known = {"all", *groups}
     return [
         Mistake(source.mark(path), path, partial(_no_such_group, name, groups))
-        for path, name in [*_selected(data), *_colored(data)]
+        for path, name in [*_selected(data), *_colored(data), *_followed(data)]
         if name not in known
     ]
 
@@ -102,6 +102,13 @@ def _colored(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     for text in _mapping(_mapping(data.get("render")).get("colors")):
         with suppress(SelectionSyntaxError):
             yield ("render", "colors", text), parse_selection(text).group
+
+
+def _followed(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+    camera = _mapping(_mapping(data.get("render")).get("camera"))
+    for path, text in _texts(camera.get("follow"), ("render", "camera", "follow")):
+        with suppress(SelectionSyntaxError):
+            yield path, parse_selection(text).group
 
 
 def _silenced(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
