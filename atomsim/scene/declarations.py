@@ -77,6 +77,19 @@ def selecting_keys(declaration: type[Declaration]) -> tuple[str, ...]:
     return tuple(key for key, field in fields if any(part == SelectionText for part in _parts(field.annotation)))
 
 
+def inner_declarations(declaration: type[Declaration]) -> Iterator[tuple[KeyPath, type[Declaration]]]:
+    """Yield, each once and with its path, what may be declared inside a declaration under keys of its own."""
+    seen = {declaration}
+    to_visit: list[tuple[KeyPath, type[Declaration]]] = [((), declaration)]
+    for path, outer in to_visit:
+        for key, field in outer.fields_by_key().items():
+            for option in _options(field.annotation, None):
+                if is_declaration(option) and option not in seen:
+                    seen.add(option)
+                    to_visit.append(((*path, key), option))
+                    yield (*path, key), option
+
+
 def is_mapping(declaration: type[Declaration], key: str) -> bool:
     """Tell whether further keys or names stand below a key of a declaration, and nothing else may."""
     options = _options(declaration.fields_by_key()[key].annotation, [])

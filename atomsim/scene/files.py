@@ -113,6 +113,8 @@ def _base_name(extends: Node, folder: str, chain: list[str]) -> str:
 
 def _mapping(text: str, name: str) -> Node:
     file = printable(name)
+    if re.match(r"\s*<[!?a-zA-Z]", text):
+        raise SceneError([Problem(Mark(file, 1, 1), "", "this is HTML or XML; a scene is YAML")])
     root = read_yaml(text, lambda line, column: Mark(file, line, column))
     if root.value is None:
         raise SceneError([Problem(root.mark, "", "the scene is empty; it begins with `atomsim: 1`")])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Iterable
 
@@ -58,14 +59,23 @@ class _Setting:
         self._parts = tuple(normalised(path).strip().split("."))
         if not path.isprintable():
             raise self._refused((), "a path is made of names; there is a character in it that cannot be seen")
-        if not all(self._parts):
+        in_brackets = re.search(r"\[(-?[0-9]+)\]", path) if self._parts[:2] != ("render", "colors") else None
+        if in_brackets is not None or "/" in path or not all(self._parts):
             raise self._refused((), "a path is keys and indices with a dot between two, like `forces.weight.impulse.2`")
         if self._parts[0] == "extends":
             raise self._refused(self._parts, "only a scene file can extend another")
         if value.lstrip().startswith("#"):
             quoted = shlex.quote(f"{path.strip()}={shown(value.strip())}")
             raise self._refused(self._parts, f"`#` begins a comment; put the value in quotes: --set {readable(quoted)}")
-        self._node = read_yaml(value, lambda line, column: self._mark, self._parts)
+        self._node = self._read(value)
+
+    def _read(self, value: str) -> Node:
+        try:
+            return read_yaml(value, lambda line, column: self._mark, self._parts)
+        except SceneError as error:
+            if re.search(r",\s*[\w.-]+=", value):
+                raise self._refused(self._parts, f"{error.problems[0].message}; each setting stands alone") from None
+            raise
 
     def applied(self) -> Node:
         """Return a tree in which the path leads to the value."""

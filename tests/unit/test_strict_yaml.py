@@ -135,7 +135,7 @@ def test_every_value_has_its_place(parser: object, monkeypatch: pytest.MonkeyPat
             "t:1:5: a `: ` cannot stand here; check indentation and the spaces after colons, "
             "and put text with a colon in quotes",
         ),
-        ("a: 'x\nb: 2", "t:2:5: the quote of line 1 is not closed"),
+        ("a: 'x\nb: 2", "t:1:4: this quote is not closed"),
         ("a: @x", 't:1:4: a value cannot begin with "@"; put it in quotes'),
         ("a: - 1", "t:1:4: a list item `- ` begins on a line of its own"),
         ("a:\n  b: 1\n c: 2\n", "t:3:2: this does not fit the lines above it; check indentation and quotes"),

@@ -129,6 +129,8 @@ def _check_name(value: str) -> str:
         raise PydanticCustomError("name", "a name has at most {most} letters", {"most": LONGEST_NAME})
     if value == "all":
         raise PydanticCustomError("name", "`all` already means every atom; choose another name")
+    if value.lower() in ("true", "false", "null"):
+        raise PydanticCustomError("name", "`true`, `false` and `null` are values in YAML; choose another name")
     return value
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any
 
@@ -12,7 +13,7 @@ from pydantic_core import ErrorDetails
 from atomsim.scene.declarations import declaration_at, sections
 from atomsim.scene.field_docs import descriptions, form
 from atomsim.scene.language import Scene
-from atomsim.scene.mistakes.hints import begin_with, hint, hint_of_list
+from atomsim.scene.mistakes.hints import begin_with, hint, hint_of_list, hint_of_text
 from atomsim.scene.mistakes.mistake import Mistake
 from atomsim.scene.mistakes.unknown import (
     MOST_LOOKED_AT,
@@ -47,6 +48,9 @@ _NEEDS = {
     "too_short": "needs {min_length} or more entries",
 }
 """What a value needs, by pydantic's name of the finding."""
+
+_WORDS = {"axis": "xyz", "rest": ("initial",)}
+"""Words that stand for a value, by the finding of the language that it is none."""
 
 _Found = dict[tuple[str, KeyPath], ErrorDetails]
 """Findings by their kind and place."""
@@ -150,7 +154,9 @@ def _message(details: ErrorDetails, path: KeyPath, data: dict[str, Any], source:
         case "extra_forbidden":
             return unknown_key(path, data, source)
         case "model_type" | "model_attributes_type" | "dict_type":
-            return f"needs a mapping {_keys(path, data)} (got {shown(value)}{_indentation(path)})"
+            return (
+                f"needs a mapping {_keys(path, data)} (got {shown(value)}{_indentation(path) or hint_of_text(value)})"
+            )
         case "name":
             return f"{details['msg']} (got {shown(path[-1])})"
         case "one_of":
@@ -159,7 +165,7 @@ def _message(details: ErrorDetails, path: KeyPath, data: dict[str, Any], source:
             return details["msg"]
         case kind:
             needs = _NEEDS[kind].format(**_context(details)) if kind in _NEEDS else details["msg"]
-            return f"{needs} (got {shown(value)}{hint(kind, path, value)})"
+            return f"{needs} (got {shown(value)}{hint(kind, path, value, _choices(details))})"
 
 
 def _context(details: ErrorDetails) -> dict[str, Any]:
@@ -169,6 +175,13 @@ def _context(details: ErrorDetails) -> dict[str, Any]:
     if "expected" in context:
         context["expected"] = context["expected"].replace("'", "")
     return context
+
+
+def _choices(details: ErrorDetails) -> Sequence[str]:
+    """Return the words of which one may stand where something else does."""
+    if details["type"] == "literal_error":
+        return re.findall("'([^']*)'", str(details["ctx"]["expected"]))
+    return _WORDS.get(details["type"], ())
 
 
 def _path(details: ErrorDetails, data: Any) -> KeyPath:

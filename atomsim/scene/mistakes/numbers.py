@@ -17,6 +17,7 @@ NO_COMMAS = "a number has no commas inside"
 _GROUPED = re.compile(r"[-+]?[0-9]{1,3}([,_' ])(?:[0-9]{2,3}\1)*[0-9]{3}(?:\.[0-9]+)?")
 _GROUPED_BY_POINTS = re.compile(r"[-+]?[0-9]{1,3}(?:\.[0-9]{3})+(?:,[0-9]+)?")
 _DECIMAL_COMMA = re.compile(r"[-+]?[0-9]+,[0-9]+(?:[eE][-+]?[0-9]+)?")
+_FRACTION = re.compile(r"([-+]?[0-9]{1,15}) ?/ ?([1-9][0-9]{0,14})")
 _ZEROS_IN_FRONT = re.compile(r"^([-+]?)0+(?=[0-9])")
 
 
@@ -31,8 +32,10 @@ def numbers_meant(text: str, *, is_whole: bool) -> list[str]:
     (['1000'], ['1000', '1.000'])
     >>> numbers_meant("1.234,5", is_whole=False), numbers_meant("\u22125", is_whole=True)
     (['1234.5'], ['-5'])
+    >>> numbers_meant("100,", is_whole=True), numbers_meant("1/60", is_whole=False)
+    (['100'], ['0.0166667'])
     """
-    text = "".join(str(unicodedata.decimal(sign, sign)) for sign in plain(text))
+    text = "".join(str(unicodedata.decimal(sign, sign)) for sign in plain(text)).rstrip(",; ")
     found = [text.replace("_", "")]
     if _GROUPED.fullmatch(text):
         found.append(re.sub(r"[,_' ]", "", text))
@@ -40,6 +43,8 @@ def numbers_meant(text: str, *, is_whole: bool) -> list[str]:
         found.append(text.replace(".", "").replace(",", "."))
     if _DECIMAL_COMMA.fullmatch(text):
         found.append(text.replace(",", "."))
+    if fraction := _FRACTION.fullmatch(text):
+        found.append(f"{int(fraction[1]) / int(fraction[2]):.6g}")
     without_zeros = (_ZEROS_IN_FRONT.sub(r"\1", number) for number in found)
     return [number for number in dict.fromkeys(without_zeros) if _is_meant(number, is_whole)]
 

@@ -5,9 +5,16 @@ from __future__ import annotations
 from itertools import islice
 from typing import Any, NamedTuple
 
-from atomsim.scene.declarations import Section, declaration_at, discriminator, sections
+from atomsim.scene.declarations import (
+    Section,
+    declaration_at,
+    discriminator,
+    inner_declarations,
+    sections,
+    selecting_keys,
+)
 from atomsim.scene.field_docs import descriptions, form
-from atomsim.scene.language import Declaration
+from atomsim.scene.language import Declaration, Scene
 from atomsim.scene.mistakes.lookalikes import first_odd
 from atomsim.scene.mistakes.numbers import around
 from atomsim.scene.mistakes.wording import (
@@ -20,7 +27,7 @@ from atomsim.scene.mistakes.wording import (
     suggestion,
 )
 from atomsim.scene.overrides import is_setting
-from atomsim.scene.source import KeyPath, Source
+from atomsim.scene.source import KeyPath, Source, dotted
 
 MOST_LOOKED_AT = 1000
 """Of more mistakes of one kind than this, the others are taken as they stand."""
@@ -112,10 +119,13 @@ def unknown_key(path: KeyPath, data: dict[str, Any], source: Source) -> str:
     there = f"the keys of {' '.join(chosen)} are" if chosen is not None else "the keys here are"
     if owners and chosen is not None:
         return _unknown(key, f"it belongs to {chosen[0]} {either(owners)}; {there} {', '.join(keys)}")
-    if close is not None:
-        return _unknown(key, _written_right(key, close))
     odd = first_odd(key)
-    return _unknown(key, f"{odd} is not what it looks like" if odd is not None else f"{there} {listed(keys)}")
+    if close is None and odd is not None:
+        return _unknown(key, f"{odd} is not what it looks like")
+    home = _home(key, value_at(path, data), declaration)
+    if home is not None or close is not None:
+        return _unknown(key, home or _written_right(key, str(close)))
+    return _unknown(key, f"{there} {listed(keys)}")
 
 
 def _unknown(key: str, remedy: str) -> str:
@@ -127,6 +137,23 @@ def _written_right(key: str, meant: str) -> str:
     if _before_colon(key) == meant:
         return f"write `{meant}: ` with a space after the colon"
     return did_you_mean(key, meant)
+
+
+def _home(key: str, value: Any, declaration: type[Declaration] | None) -> str | None:
+    """Say where a key belongs that stands too far out, or how what it selects is selected here."""
+    if declaration is None:
+        return None
+    homes = [dotted(path) for path, inner in inner_declarations(declaration) if key in inner.fields_by_key()]
+    if homes:
+        return f"it belongs under {either(f'`{home}`' for home in homes)}"
+    if declaration is Scene and isinstance(value, dict):
+        for name, section in sections().items():
+            if section.key is not None and value.get(section.key) in section.words:
+                return f"indent it under `{name}`"
+    here = selecting_keys(declaration)
+    if here and any(key in selecting_keys(other) for section in sections().values() for other in section.declarations):
+        return f"atoms are selected by {either(f'`{name}`' for name in here)} here"
+    return None
 
 
 def _number_around(key: str, declared: dict[str, Any], declaration: type[Declaration] | None) -> str | None:

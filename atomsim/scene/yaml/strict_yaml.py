@@ -115,10 +115,11 @@ class _Reader:
         try:
             yield from yaml.parse(text, Loader=_PARSER)
         except yaml.MarkedYAMLError as error:
-            mark = error.problem_mark or error.context_mark
-            self.refused_at = mark.index if mark is not None else None
+            gave_up = error.problem_mark or error.context_mark
+            self.refused_at = gave_up.index if gave_up is not None else None
+            mark, message = explain(error, text.translate(self._back))
             place = self._place(mark.line + 1, mark.column + 1) if mark is not None else self._place(1, 1)
-            self._problems.append(Problem(place, "", explain(error, text.translate(self._back))))
+            self._problems.append(Problem(place, "", message))
             raise SceneError(self._told()) from None
 
     def _node(self, event: yaml.Event, path: KeyPath) -> Node:
@@ -184,7 +185,10 @@ class _Reader:
     def _key(self, event: yaml.Event, path: KeyPath) -> str:
         """Read a key; whatever it looks like, it is text, in its composed form (NFC): é is one letter."""
         if not isinstance(event, yaml.ScalarEvent):
-            raise self._refused(event, path, "a key must be a plain word")
+            start = event.start_mark.index if event.start_mark is not None else 0
+            is_template = self._text[max(0, start - 1) : start + 1] == "{{"
+            why = "`{{` belongs to a template; write the value itself" if is_template else "a key must be a plain word"
+            raise self._refused(event, path, why)
         self._node(event, path)
         if event.value == "<<" and event.implicit[0]:
             self._refuse(event, path, "merge keys `<<` are not part of the scene language; write the keys out")
