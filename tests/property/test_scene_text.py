@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from hypothesis import example, given
@@ -42,8 +44,9 @@ SCALARS = st.one_of(
 
 
 def mappings(values: st.SearchStrategy[Any]) -> st.SearchStrategy[dict[str, Any]]:
-    """Make mappings with any text for keys, but often the same."""
-    return st.dictionaries(st.sampled_from("abc") | st.text(PRINTABLE, max_size=5), values, max_size=4)
+    """Make mappings with any text for keys, but often the same; keys are read as they are composed in Unicode (NFC)."""
+    texts = st.text(PRINTABLE, max_size=5).map(partial(unicodedata.normalize, "NFC"))
+    return st.dictionaries(st.sampled_from("abc") | texts, values, max_size=4)
 
 
 DATA = st.recursive(SCALARS, lambda inner: st.lists(inner, max_size=4) | mappings(inner), max_leaves=20)
