@@ -16,6 +16,18 @@ MAX_FILES = 16
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
+_OTHERS = (
+    (b"\x1f\x8b", "a gzip archive"),
+    (b"PK\x03\x04", "a ZIP archive"),
+    (b"BZh", "a bzip2 archive"),
+    (b"\xfd7zXZ\0", "an xz archive"),
+    (b"\x28\xb5\x2f\xfd", "a zstd archive"),
+    (b"\x89PNG", "a picture"),
+    (b"\xff\xd8\xff", "a picture"),
+    (b"%PDF-", "a PDF document"),
+)
+"""How other files begin that somebody may take for a scene."""
+
 _ENCODINGS = (
     (rb"\xff\xfe\0\0|\0\0\xfe\xff|[^\0]\0\0\0|\0\0\0[^\0]", "UTF-32"),
     (rb"\xff\xfe|\xfe\xff|[^\0]\0|\0[^\0]", "UTF-16"),
@@ -156,6 +168,9 @@ def _decoded(data: bytes, name: str) -> str:
     """Return the text of a file, which is UTF-8."""
     if data.startswith(_HDF5):
         raise _unreadable(name, "this is a trajectory, not a scene", Remedy("show scene", Path(name)))
+    other = next((what for start, what in _OTHERS if data.startswith(start)), None)
+    if other is not None:
+        raise _unreadable(name, f"this is {other}, not a scene")
     encoding = next((encoding for start, encoding in _ENCODINGS if re.match(start, data, re.DOTALL)), None)
     if encoding is not None:
         raise _unreadable(name, f"the file is {encoding}; save it as UTF-8")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import bz2
+import gzip
 import json
+import lzma
 import os
 from pathlib import Path
 
@@ -141,6 +144,22 @@ def test_forbidden_file(folder: Path) -> None:
 
 
 ENCODINGS = ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le", "utf-32-be"]
+
+
+@pytest.mark.parametrize(
+    ("content", "what"),
+    [
+        (gzip.compress(GOOD.encode()), "a gzip archive"),
+        (bz2.compress(GOOD.encode()), "a bzip2 archive"),
+        (lzma.compress(GOOD.encode()), "an xz archive"),
+        (b"PK\x03\x04\x14\0", "a ZIP archive"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "a picture"),
+        (b"%PDF-1.7\n", "a PDF document"),
+    ],
+)
+def test_another_file_is_called_what_it_is(content: bytes, what: str, folder: Path) -> None:
+    write("s.yaml", content)
+    assert refusal("s.yaml") == f"s.yaml: this is {what}, not a scene"
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
