@@ -281,13 +281,13 @@ def test_a_torque_on_copies_is_told_once_and_only_if_none_of_them_has_a_lever() 
     text = (
         HEAD
         + """\
-  axle: {shape: string, count: 9, step: [0.3, 0, 0], velocity: [1, 0, 0], copies: {count: 3, axis: AXIS}}
+  axle: {shape: string, count: 9, step: [0.3, 0, 0], velocity: [1, 0, 0], copies: {count: 3, COPIES}}
 forces: {motor: {kind: torque, acts_on: axle, axis: x, magnitude: 1}}
 """
     )
-    (never,) = found(text.replace("AXIS", "x"), "force-never-acts")
+    (never,) = found(text.replace("COPIES", "step: [0, 5, 0]"), "force-never-acts")
     assert never.names == ("forces.motor", "groups.axle")
-    assert found(text.replace("AXIS", "z"), "force-never-acts") == []
+    assert found(text.replace("COPIES", "axis: z, through: [9, 0, 0]"), "force-never-acts") == []
 
 
 def test_collisions_of_what_is_held() -> None:
