@@ -16,49 +16,51 @@ class Kind:
 
     Attributes:
         level: how sure it is to be a fault.
+        is_mechanical: whether its remedy can be applied without asking: it deletes no part, and guesses nothing.
         follows_from: kinds of which this one is a mere consequence, each with the section of the scene in which both
             must name the same: it is not told twice.
     """
 
     level: Level
+    is_mechanical: bool = False
     follows_from: Mapping[str, str] = field(default_factory=dict)
 
 
 KINDS: dict[str, Kind] = {
-    "ghost-contact": Kind("warning"),
+    "ghost-contact": Kind("warning", is_mechanical=True),
     "self-pass": Kind("warning"),
-    "tunnelling": Kind("warning"),
-    "hole": Kind("warning"),
-    "floppy": Kind("warning", {"in-pieces": "groups", "rule-misses-group": "groups"}),
-    "loose-joint": Kind("note", {"in-pieces": "groups", "rule-misses-group": "groups"}),
-    "in-pieces": Kind("warning"),
-    "rule-misses-group": Kind("warning"),
-    "over-stiff": Kind("warning"),
-    "weld": Kind("warning", {"prestressed": "bonds"}),
-    "declared-twice": Kind("warning"),
-    "idle": Kind("warning"),
+    "tunnelling": Kind("warning", is_mechanical=True),
+    "hole": Kind("warning", is_mechanical=True),
+    "floppy": Kind("warning", is_mechanical=True, follows_from={"in-pieces": "groups", "rule-misses-group": "groups"}),
+    "loose-joint": Kind("note", follows_from={"in-pieces": "groups", "rule-misses-group": "groups"}),
+    "in-pieces": Kind("warning", is_mechanical=True),
+    "rule-misses-group": Kind("warning", is_mechanical=True),
+    "over-stiff": Kind("warning", is_mechanical=True),
+    "weld": Kind("warning", is_mechanical=True, follows_from={"prestressed": "bonds"}),
+    "declared-twice": Kind("warning", is_mechanical=True),
+    "idle": Kind("warning", follows_from={"rule-misses-group": "groups"}),
     "hovers": Kind("warning"),
-    "floating-support": Kind("note"),
-    "unsupported": Kind("warning", {"ghost-contact": "groups", "hole": "groups", "in-pieces": "groups"}),
-    "too-late": Kind("warning", {"over-damped": "groups"}),
+    "floating-support": Kind("note", is_mechanical=True),
+    "unsupported": Kind("warning", follows_from={"ghost-contact": "groups", "hole": "groups", "in-pieces": "groups"}),
+    "too-late": Kind("warning", is_mechanical=True, follows_from={"over-damped": "groups"}),
     "force-on-held": Kind("warning"),
     "force-never-acts": Kind("warning"),
     "collision-of-held": Kind("warning"),
-    "overlap-at-start": Kind("warning", {"weld": "collisions"}),
-    "prestressed": Kind("warning"),
+    "overlap-at-start": Kind("warning", is_mechanical=True, follows_from={"weld": "collisions"}),
+    "prestressed": Kind("warning", is_mechanical=True),
     "never-touches": Kind("warning"),
     "collision-never": Kind("note"),
     "over-damped": Kind("warning"),
-    "symmetric": Kind("warning"),
+    "symmetric": Kind("warning", is_mechanical=True),
     "coarse-record": Kind("note"),
-    "off-camera": Kind("warning"),
+    "off-camera": Kind("warning", is_mechanical=True),
     "overpowered": Kind("warning"),
     "energy-grows": Kind("warning"),
     "blow-up": Kind("warning"),
     "left-scene": Kind("note"),
     "restless": Kind("note"),
     "rests-early": Kind("note"),
-    "no-such-round": Kind("note"),
+    "no-such-round": Kind("note", is_mechanical=True),
     "needless-silence": Kind("note"),
 }
 """Every kind by its code."""

@@ -90,7 +90,8 @@ def table(verdicts: Sequence[Verdict]) -> str:
             f"`{verdict.hit.code}`" if verdict.hit else "after the run" if verdict.fault.when == "after" else "missed"
         )
         further = ", ".join(f"`{each.code}`" for each in verdict.further)
-        lines.append(f"| {verdict.fault.path.stem} | {told} | {further} |")
+        name = f"{verdict.fault.path.parents[1].name}/{verdict.fault.path.stem}"
+        lines.append(f"| {name} | {told} | {further} |")
     return "\n".join(lines)
 
 

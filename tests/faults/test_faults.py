@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import statistics
+from functools import cache
 from pathlib import Path
 
 import pytest
-from faults.score import Fault, before, faults_in, judge, sound_in
+from faults.score import Fault, Verdict, before, faults_in, judge, sound_in, table
 
 from atomsim.findings.before.diagnose import DIAGNOSES
 from atomsim.scene.loader import load
@@ -39,20 +40,30 @@ def name_of(value: object) -> str:
     return f"{value.parent.parent.name}-{value.stem}" if isinstance(value, Path) else str(value)
 
 
+@cache
+def judged(fault: Fault) -> Verdict:
+    return judge(fault)
+
+
 @pytest.mark.parametrize("fault", DUE, ids=name_of)
 def test_a_fault_is_told_before_the_run(fault: Fault) -> None:
-    verdict = judge(fault)
+    verdict = judged(fault)
     assert verdict.hit is not None, [str(each) for each in verdict.further]
     assert verdict.hit.remedy or fault.kind in ("unsupported", "floating-support")
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=name_of)
 def test_little_else_is_said_of_a_faulty_scene(fault: Fault) -> None:
-    assert len(judge(fault).further) <= 2
+    assert len(judged(fault).further) <= 2
 
 
 def test_nothing_else_is_said_of_most_faulty_scenes() -> None:
-    assert statistics.median(len(judge(fault).further) for fault in FAULTS) == 0
+    assert statistics.median(len(judged(fault).further) for fault in FAULTS) == 0
+
+
+def test_the_table_of_the_docs_is_fresh() -> None:
+    page = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
+    assert table([judged(fault) for fault in FAULTS]) in page
 
 
 def test_the_own_half_has_every_kind_that_shows_before_a_run() -> None:

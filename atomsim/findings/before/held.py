@@ -23,8 +23,8 @@ def force_on_held(subject: Subject) -> Iterator[Symptom]:
         acted_on.setdefault(force.origin.name, []).append(force.atoms)
     by_holds: dict[tuple[str, ...], dict[str, Indices]] = {}
     for name, parts in acted_on.items():
-        atoms = distinct(parts)
-        if subject.is_held[atoms].all():
+        if all(subject.is_held[atoms].all() for atoms in parts):
+            atoms = distinct(parts)
             by_holds.setdefault(_holds_of(subject, atoms), {})[name] = atoms
     for holds, dead in by_holds.items():
         names, atoms = list(dead), distinct(list(dead.values()))

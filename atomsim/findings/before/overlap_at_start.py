@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,7 +14,8 @@ from atomsim.core.pairs.collisions import table_pairs_near
 from atomsim.core.pairs.near import pair_squares
 from atomsim.findings.finding import Remedy, Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import counted
+from atomsim.findings.words import counted, round_up
+from atomsim.scene.language import BlockGroup
 
 DEEP = 1.9
 """Pairs nearer than this overlap [length]; a tenth less than contact is a trifle, or the work of jitter."""
@@ -36,6 +38,7 @@ def _symptom(subject: Subject, table: CollisionTable, first: Indices, second: In
     energy = float(contact_potential(squared).sum()) / subject.model.time_step
     one, other = (atom_name(int(atoms[deepest]), subject.model.groups) for atoms in (first, second))
     spared = sparing(subject.model, table, first, second)
+    looser = _looser_block(subject, first, second, math.sqrt(float(squared[deepest])))
     return Symptom(
         at=("collisions", table.origin.name),
         names=(("collisions", table.origin.name), *subject.group_paths(np.concatenate((first, second)))),
@@ -43,11 +46,21 @@ def _symptom(subject: Subject, table: CollisionTable, first: Indices, second: In
             f"{counted(first.size, 'pair')} {'overlaps' if first.size == 1 else 'overlap'} at the start "
             f"({', '.join(overlapping_groups(subject.model, first, second))}), most {one} and {other}, "
             f"{np.sqrt(squared[deepest]):.3g} apart (contact is at 2); that releases the energy {energy:.3g}; "
-            f"move them apart{in_words(spared)}"
+            f"move them apart{'' if looser else in_words(spared)}"
         ),
-        remedy=remedy(table, spared),
+        remedy=looser or remedy(table, spared),
         rounds=(0,),
     )
+
+
+def _looser_block(subject: Subject, first: Indices, second: Indices, nearest: float) -> Remedy:
+    """Return a larger spacing, where all that overlaps are loose atoms of one block, as of a fluid; else nothing."""
+    names = subject.groups_of(np.concatenate((first, second)))
+    declared = subject.scene.groups[names[0]]
+    span = next(span for span in subject.model.groups if span.name == names[0])
+    if len(names) > 1 or not isinstance(declared, BlockGroup) or not subject.is_loose[span.start : span.stop].all():
+        return {}
+    return {"groups": {names[0]: {"spacing": round_up(declared.spacing * 2.0 / nearest)}}}
 
 
 def in_words(spared: Sparing) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
-from atomsim.findings.words import listed
+from atomsim.findings.words import listed, round_up
 
 LATE = 2.0
 """A first contact after so many times the rounds is no matter of a run that was cut short."""
@@ -35,6 +35,6 @@ def too_late(subject: Subject) -> Iterator[Symptom]:
                 f"{listed(groups)} would first touch {listed(partners)} in round {when:,}, and the run ends at "
                 f"{rounds:,}: place it nearer, push it harder, or run longer"
             ),
-            remedy={"rounds": round(1.2 * when, 1 - int(math.log10(when)))},
+            remedy={"rounds": int(round_up(1.1 * when))},
             rounds=(when,),
         )
