@@ -10,17 +10,21 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+from typer.main import get_command
 
 import atomsim
+from atomsim.cli.app import app
 from atomsim.cli.remedies import in_words, with_remedies
 from atomsim.errors import AtomsimError, InputError, Mark, Notice, Problem, Remedy, RemedyKind, SceneError
 
 PACKAGE = Path(atomsim.__file__).parent
 BELOW_THE_COMMAND_LINE = sorted(path for path in PACKAGE.rglob("*.py") if "cli" not in path.relative_to(PACKAGE).parts)
 
-COMMANDS = "run|render|check|show|compare|verify|recover|golden|schema"
-
-TYPED = re.compile(rf"(?<![\w-])--?[a-z][a-z-]*|\batomsim ({COMMANDS})\b")
+TOP = get_command(app)
+COMMANDS = "|".join(TOP.commands)
+PARAMETERS = [parameter for command in TOP.commands.values() for parameter in command.params]
+OPTIONS = "|".join({option for parameter in PARAMETERS for option in parameter.opts if option[0] == "-"})
+TYPED = re.compile(rf"(?<![\w-])({OPTIONS})(?![\w-])|\batomsim ({COMMANDS})\b")
 """What people type after a prompt: options and commands."""
 
 PLACES = {"--set "}
