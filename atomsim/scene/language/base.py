@@ -45,7 +45,11 @@ class Declaration(BaseModel):
 
 def require_one(declaration: Declaration, *keys: str) -> None:
     """Refuse a declaration that does not say exactly one of the keys."""
-    given = [key for key in keys if getattr(declaration, key) is not None]
+    refuse_all_but_one([key for key in keys if getattr(declaration, key) is not None], keys)
+
+
+def refuse_all_but_one(given: list[str], keys: tuple[str, ...]) -> None:
+    """Refuse what is not exactly one of the keys."""
     if len(given) != 1:
         names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
         found = " and ".join(f"`{key}`" for key in given) if given else "none"

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from atomsim.scene.language.base import Declaration, Number, Round
+from atomsim.scene.language.base import Declaration, Number, Round, refuse_all_but_one
 from atomsim.scene.language.measures import MeasureSyntaxError, parse_measure
 from atomsim.scene.language.selection import SelectionSyntaxError
 from atomsim.scene.mistakes.wording import readable
@@ -115,10 +115,10 @@ class Expectation(Declaration):
 
     @model_validator(mode="after")
     def _check_parts(self) -> Expectation:
-        _one_of(self.said(CLAIMS), CLAIMS)
+        refuse_all_but_one(self.said(CLAIMS), CLAIMS)
         bounds = self.said(BOUNDS)
         if self.measure is not None:
-            _one_of(bounds, BOUNDS)
+            refuse_all_but_one(bounds, BOUNDS)
         elif bounds:
             raise PydanticCustomError("bound", "`{bound}` needs a `measure`", {"bound": bounds[0]})
         if len(self.said(WHENS)) > 1:
@@ -146,10 +146,3 @@ class Expectation(Declaration):
         """The measures that it speaks of, each once, in order."""
         own = () if self.measure is None else (self.measure,)
         return tuple(dict.fromkeys([*own, *(text for part in self.parts.values() for text in part.measures)]))
-
-
-def _one_of(found: list[str], keys: tuple[str, ...]) -> None:
-    if len(found) != 1:
-        names = ", ".join(f"`{key}`" for key in keys[:-1]) + f" or `{keys[-1]}`"
-        context = {"names": names, "found": " and ".join(f"`{key}`" for key in found) or "none"}
-        raise PydanticCustomError("one_of", "say exactly one of {names} (got {found})", context)

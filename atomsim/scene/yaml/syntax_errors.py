@@ -35,7 +35,10 @@ _VALUES = (
     (r"unknown escape|escape code|hexdecimal", "`\\` in double quotes begins an escape; use single quotes"),
     (r"alphabetic or numeric", "a value that begins with `*` or `&` needs quotes"),
     (r"unexpected ':'", "a space is missing after this colon"),
-    (r"comment or line break|indentation indicator|chomping", "a value that begins with `|` or `>` needs quotes"),
+    (
+        r"comment or (?:a )?line break|indentation indicator|chomping",
+        "a value that begins with `|` or `>` needs quotes",
+    ),
     (r"mapping keys are not allowed", "a value that begins with `? ` needs quotes"),
     (r"directive|version number|incompatible YAML", "`%` begins a directive; leave it out, or put the value in quotes"),
     (r"tag|URI", "tags are not allowed; leave out what begins with `!`"),
