@@ -144,7 +144,10 @@ is how far groups move and how their speeds change.
 
 `--camera`, `--look-at`, `--width` and `--follow` stand for keys of [`render.camera`](scene-reference.md#camera), and
 take the place of what the scene says. Rows without a direction of their own are seen from the same side, across the
-motion of all of them.
+motion of all of them. Of several `--camera`, each makes a row of its own.
+
+With `--size 8x6cm` a frame has that size on paper, at 300 pixels per inch or as many as `--dpi` says. `--transparent`
+leaves nothing behind the atoms and the words, for slides and posters; `--dark` makes both fit a dark one.
 """,
     "atomsim check": """\
 The word after a number of bonds says how they are computed. All three ways give the same bits; they differ in speed.
@@ -230,7 +233,7 @@ def _scene_reference() -> Iterator[str]:
     yield from _family("## Forces", "forces", docs)
     yield from _section("## Pictures: `render`", ["Render"], docs)
     yield from _section("### Camera", ["Camera"], docs)
-    yield _examples("render", "follow")
+    yield _examples("render", "follow", "close_up")
     yield from _section("## What should happen: `expect`", ["Expectation"], docs)
     yield EXPECTATIONS
     yield _examples("expect")

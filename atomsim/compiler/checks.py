@@ -146,8 +146,9 @@ def pictures_of_nothing(scene: Scene, selections: Selections) -> Iterator[Compla
     """Check what the picture says of atoms that do not exist; who draws asks for them again."""
     shown: list[tuple[KeyPath, tuple[str, ...]]]
     shown = [(("render", "colors", selection), (selection,)) for selection in scene.render.colors]
-    if scene.render.camera.follow is not None:
-        shown.append((("render", "camera", "follow"), scene.render.camera.follow))
+    camera = scene.render.camera
+    named = {"follow": camera.follow, "close_up": camera.close_up}
+    shown += [(("render", "camera", key), selection) for key, selection in named.items() if selection is not None]
     for path, selection in shown:
         try:
             selections.atoms(selection)

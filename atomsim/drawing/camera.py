@@ -19,10 +19,15 @@ AZIMUTH, ELEVATION = 30.0, 20.0
 """Where the viewer stands where nobody said and nothing speaks for another place [degrees]."""
 
 EYE_DISTANCE = 5.0
-"""Distance of the eye in widths of the picture: near enough to tell front from back, far enough to keep balls round."""
+"""Distance of the eye in widths of the picture, where no field of view is asked for: near enough to tell front from
+back, far enough to keep balls round."""
 
-CLOSEST_EYE = 10.0
-"""The eye is never nearer to the middle of the picture than this [length], so a close-up does not enter its ball."""
+CLOSEST_EYE, CLOSEST_WIDE_EYE = 10.0, 3.0
+"""The eye is never nearer to the middle of the picture than this [length], so a close-up does not enter its ball; nor
+nearer than the second where a field of view is asked for."""
+
+WIDEST = 120.0
+"""No picture has a wider field of view than this [degrees]."""
 
 FARTHEST = 1e9
 """A coordinate beyond this is no place in a scene any more [length]."""
@@ -59,6 +64,7 @@ class View:
         up: the axis that points up in the picture.
         look_at: the point in the middle of the picture [length].
         width: the width that the picture shows at `look_at` [length].
+        field_of_view: the angle that the width takes [degrees]; 0 for parallel rays, None for slight perspective.
 
     Raises:
         InputError: a number is not finite or beyond all scenes.
@@ -69,6 +75,7 @@ class View:
     up: Literal["x", "y", "z"] = "z"
     look_at: Vector | None = None
     width: float | None = None
+    field_of_view: float | None = None
 
     def __post_init__(self) -> None:
         for name, angle in (("azimuth", self.azimuth), ("elevation", self.elevation)):
@@ -78,6 +85,17 @@ class View:
             raise InputError(f"camera: look_at must be within ±{FARTHEST:g} (got {list(self.look_at)})")
         if self.width is not None and not NARROWEST <= self.width <= FARTHEST:
             raise InputError(f"camera: width must be from {NARROWEST:g} to {FARTHEST:g} (got {self.width:g})")
+
+        if self.field_of_view is not None and not 0.0 <= self.field_of_view <= WIDEST:
+            raise InputError(f"camera: field_of_view must be from 0 to {WIDEST:g} (got {self.field_of_view:g})")
+
+    @property
+    def eye_distance(self) -> float:
+        """Distance of the eye in widths of the picture; infinite where rays are parallel."""
+        if self.field_of_view is None:
+            return EYE_DISTANCE
+        half = quantise(math.tan(math.radians(self.field_of_view) / 2))
+        return 0.5 / half if half else math.inf
 
     def axes(self) -> tuple[Vector, Vector, Vector]:
         """Return the directions right and up in the picture and back to the viewer, as unit vectors in space."""
@@ -157,7 +175,8 @@ class Camera:
     @classmethod
     def of(cls, view: View, centre: Vector, width: float) -> Camera:
         """Return the camera of a view that has `centre` in the middle and shows `width` there [length]."""
-        return cls(centre, *view.axes(), view.vertical, width, 1.0 / max(EYE_DISTANCE * width, CLOSEST_EYE))
+        closest = CLOSEST_EYE if view.field_of_view is None else CLOSEST_WIDE_EYE
+        return cls(centre, *view.axes(), view.vertical, width, 1.0 / max(view.eye_distance * width, closest))
 
     def see(self, position: Floats) -> Floats:
         """Return positions in camera coordinates.

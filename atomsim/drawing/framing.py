@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from atomsim.core.model import Floats, Indices
-from atomsim.drawing.camera import EYE_DISTANCE, FARTHEST, Camera, View, is_before_eye, outline
+from atomsim.drawing.camera import CLOSEST_WIDE_EYE, FARTHEST, Camera, View, is_before_eye, outline
 from atomsim.drawing.hull import hull
 
 MARGIN = 1.06
@@ -64,7 +65,9 @@ def fit(
     seen = _outermost(origin, shown, shown[0] if start is None else start, scenery)
     low, high = seen.min(axis=1), seen.max(axis=1)
     middle = np.zeros(3) if view.look_at else (low + high) / 2
-    nearest_width = 2 * float((seen[2] - middle[2]).max()) / EYE_DISTANCE
+    if view.field_of_view and not view.width:
+        return _fit_angle(view, seen, middle, origin, size)
+    nearest_width = 2 * float((seen[2] - middle[2]).max()) / view.eye_distance
     width = view.width or max(float((high - low).max()), 2.0)
     for _ in range(_FITTING_STEPS):
         bottom_left, top_right = _extent(
@@ -78,6 +81,28 @@ def fit(
             half_width, half_height = np.maximum(top_right, -bottom_left).tolist()
             width = max(2 * MARGIN * max(half_width, half_height * size[0] / size[1]), nearest_width)
     return Camera.of(view, origin.place((float(middle[0]), float(middle[1]), float(middle[2]))), width)
+
+
+def _fit_angle(view: View, seen: Floats, middle: Floats, origin: Camera, size: tuple[int, int]) -> Camera:
+    """Return the camera whose eye is as near as balls allow that have to be in its field of view.
+
+    A unit ball at (x, z) is to the left of the plane through the eye at height d, with slope t, if x is at most
+    t·(d − z) − √(1 + t²); so each ball asks for some d, and what asks for most decides.
+    """
+    slope = 0.5 / view.eye_distance / MARGIN
+    distance = float(seen[2].max()) + CLOSEST_WIDE_EYE / 2
+    for axis, t in ((0, slope), (1, slope * size[1] / size[0])):
+        right, left = (float((side * seen[axis] / t + seen[2]).max()) for side in (1.0, -1.0))
+        if not view.look_at:
+            middle[axis] = (right - left) * t / 2
+        distance = max(distance, right - middle[axis] / t + _spare(t), left + middle[axis] / t + _spare(t))
+    width = max(distance - middle[2], CLOSEST_WIDE_EYE) / view.eye_distance
+    return Camera.of(view, origin.place((float(middle[0]), float(middle[1]), float(middle[2]))), width)
+
+
+def _spare(slope: float) -> float:
+    """Return how far before the centre of a ball an eye has to be on its rim, between planes of a slope."""
+    return math.sqrt(1.0 + slope * slope) / slope
 
 
 def _extent(seen: Floats, convergence: float) -> tuple[Floats, Floats]:

@@ -29,8 +29,11 @@ FORMATS: Mapping[str, Mapping[str, Any]] = {
 }
 """What a strip can be written as, with our mark, and without the time of writing and the versions of programs."""
 
-_DPI = 64
-"""A power of two, so that no size in pixels is lost on the way through inches."""
+DPI = 64
+"""Pixels per inch where nobody says: a power of two, so that no size is lost on the way through inches."""
+
+_ROUNDING = 0.1
+"""Pixels by which a page is larger than it has to be, or one might be lost where an inch has another number of them."""
 
 _LONGEST_LINE = 400
 """Letters of a line beyond this are not even measured."""
@@ -38,7 +41,19 @@ _LONGEST_LINE = 400
 _MISSING = "\N{REPLACEMENT CHARACTER}"
 """Stands for what the font does not have; for such letters matplotlib would warn, and look in other fonts."""
 
-_INK, _FAINT, _ALARM = "#1d1d1f", "#56565c", "#b22222"
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """The colours of what is around the pictures: `#rrggbb`, or `none` for a page that can be laid over others."""
+
+    page: str
+    ink: str
+    faint: str
+    alarm: str
+
+
+WHITE = Paper("#ffffff", "#1d1d1f", "#56565c", "#b22222")
+BLACK = Paper("#1c1c1e", "#f2f2f4", "#a9a9b0", "#ff7b72")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +66,14 @@ class Panel:
     notice: str
 
 
-def encode(titles: Sequence[str], rows: Sequence[Sequence[Panel]], layout: Layout, extension: str) -> bytes:
+def encode(
+    titles: Sequence[str],
+    rows: Sequence[Sequence[Panel]],
+    layout: Layout,
+    extension: str,
+    paper: Paper = WHITE,
+    dpi: int = DPI,
+) -> bytes:
     """Return a strip as a file: the same strip gives the same bytes, whatever the user's matplotlib is set to.
 
     Args:
@@ -59,6 +81,8 @@ def encode(titles: Sequence[str], rows: Sequence[Sequence[Panel]], layout: Layou
         rows: the panels of each row, from top to bottom.
         layout: where they go.
         extension: the format, one of `FORMATS`.
+        paper: the colours around the pictures.
+        dpi: pixels per inch.
     """
     content = io.BytesIO()
     with plain_matplotlib({"svg.hashsalt": "atomsim"}) as font:
@@ -66,12 +90,14 @@ def encode(titles: Sequence[str], rows: Sequence[Sequence[Panel]], layout: Layou
         from matplotlib.figure import Figure
         from matplotlib.ft2font import FT2Font
 
-        figure = Figure(figsize=(layout.width / _DPI, layout.height / _DPI), dpi=_DPI, facecolor="white")
+        spare = 0.0 if dpi == DPI else _ROUNDING
+        inches = ((layout.width + spare) / dpi, (layout.height + spare) / dpi)
+        figure = Figure(figsize=inches, dpi=dpi, facecolor=paper.page)
         FigureCanvasAgg(figure)  # which becomes the figure's canvas; text is measured with it
-        page = _Page(figure, layout, font, FT2Font(str(font)))
+        page = _Page(figure, layout, paper, dpi, font, FT2Font(str(font)))
         for number, (title, panels) in enumerate(zip(titles, rows, strict=True)):
             page.add(number, title, panels)
-        figure.savefig(content, format=extension[1:], dpi=_DPI, **FORMATS[extension])
+        figure.savefig(content, format=extension[1:], dpi=dpi, **FORMATS[extension])
     return content.getvalue()
 
 
@@ -81,6 +107,8 @@ class _Page:
 
     figure: Figure
     layout: Layout
+    paper: Paper
+    dpi: int
     font: Path
     letters: FT2Font
 
@@ -88,13 +116,13 @@ class _Page:
         """Put a row in its place."""
         layout, font = self.layout, self.layout.font
         left, top = layout.corner(number, 0)
-        self._write(left, top - 0.75 * font, title, 1.25 * font, _INK, layout.width - 2 * left)
+        self._write(left, top - 0.75 * font, title, 1.25 * font, self.paper.ink, layout.width - 2 * left)
         width, height = layout.frame
         for index, panel in enumerate(panels):
             left, top = layout.corner(number, index)
             self.figure.figimage(panel.picture, xo=left, yo=layout.height - top - height, origin="upper")
-            self._write(left, top + height + 1.4 * font, panel.caption, font, _FAINT, width)
-            self._write(left, top + height + 2.8 * font, panel.notice, font, _ALARM, width)
+            self._write(left, top + height + 1.4 * font, panel.caption, font, self.paper.faint, width)
+            self._write(left, top + height + 2.8 * font, panel.notice, font, self.paper.alarm, width)
 
     def _write(self, left: float, baseline: float, words: str, size: float, color: str, room: float) -> None:
         """Write one line, shortened to the room it has; where there is not even room for `…`, nothing."""
@@ -104,7 +132,7 @@ class _Page:
             1.0 - baseline / self.layout.height,
             line,
             font=self.font,
-            fontsize=size * 72 / _DPI,
+            fontsize=size * 72 / self.dpi,
             color=color,
             parse_math=False,
         )

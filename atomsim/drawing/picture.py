@@ -27,7 +27,7 @@ _RIM, _GLOSS = 0.6, 0.14
 """How much darker a ball is at its outline, which tells it from its neighbours; and how bright its highlight is."""
 
 Pixels: TypeAlias = NDArray[np.uint8]
-"""A picture, (height, width, 3): row 0 at the top; red, green, blue."""
+"""A picture, (height, width, 3 or 4): row 0 at the top; red, green, blue, and how opaque it is."""
 
 
 def draw(
@@ -35,7 +35,7 @@ def draw(
     color: Floats,
     camera: Camera,
     size: tuple[int, int],
-    background: tuple[float, float, float] = (0.96, 0.96, 0.97),
+    background: tuple[float, float, float] | None = (0.96, 0.96, 0.97),
 ) -> Pixels:
     """Draw atoms as unit balls: exact per pixel also where they intersect, with soft light and shadows on one another.
 
@@ -49,10 +49,10 @@ def draw(
         color: red, green and blue of every atom from 0 to 1, (n_atoms, 3) float64.
         camera: from where and how large.
         size: width and height [pixels].
-        background: red, green and blue from 0 to 1.
+        background: red, green and blue from 0 to 1; None for none, so that the picture can be laid over others.
 
     Returns:
-        (height, width, 3) uint8.
+        (height, width, 3) uint8, without a background (height, width, 4).
     """
     drawable = is_drawable(position)
     seen = camera.see(position[drawable])
@@ -61,7 +61,7 @@ def draw(
     grid = Grid(-camera.width / 2, n_rows * pixel / 2, pixel, n_columns, n_rows)
     lit = _lit(seen, camera, grid)
     beams = beams_on(seen, lit, camera.direction(camera.vertical)) if len(lit) else []
-    scene = _Lit(seen, color[drawable] * color[drawable], camera, beams, np.square(np.array(background)))
+    scene = _Lit(seen, color[drawable] * color[drawable], camera, beams, background)
     band = SUPERSAMPLING * max(_BAND // (n_columns * SUPERSAMPLING), 1)
     return np.concatenate([scene.paint(grid.band(first, band)) for first in range(0, n_rows, band)])
 
@@ -76,6 +76,11 @@ def _lit(seen: Floats, camera: Camera, grid: Grid) -> Indices:
     return near if len(near) else visible
 
 
+def _mean_of_samples(light: Floats) -> Floats:
+    """Return the means of the samples of every pixel: (m, 2·n_rows, 2·n_columns) to (m, n_rows, n_columns)."""
+    return (light[:, 0::2, 0::2] + light[:, 0::2, 1::2] + light[:, 1::2, 0::2] + light[:, 1::2, 1::2]) / 4.0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Lit:
     """A scene ready to be painted band by band.
@@ -87,16 +92,21 @@ class _Lit:
     color: Floats
     camera: Camera
     beams: list[Beam]
-    background: Floats
+    background: tuple[float, float, float] | None
 
     def paint(self, grid: Grid) -> Pixels:
         """Return the pixels of a band."""
         owner = nearest_ball(self.seen, self.camera.convergence, grid)
-        row, column = np.nonzero(owner != NOTHING)
-        light = np.empty((3, grid.n_rows, grid.n_columns))
-        light[:] = self.background[:, np.newaxis, np.newaxis]
+        is_ball = owner != NOTHING
+        row, column = np.nonzero(is_ball)
+        light = np.zeros((3, grid.n_rows, grid.n_columns))
+        if self.background is not None:
+            light[:] = np.square(np.array(self.background))[:, np.newaxis, np.newaxis]
         light[:, row, column] = self._shade(owner[row, column], grid.x().take(column), grid.y().take(row))
-        mean = (light[:, 0::2, 0::2] + light[:, 0::2, 1::2] + light[:, 1::2, 0::2] + light[:, 1::2, 1::2]) / 4.0
+        mean = _mean_of_samples(light)
+        if self.background is None:  # the colour is that of the balls alone, so that no edge has a fringe
+            opacity = _mean_of_samples(is_ball[np.newaxis].astype(np.float64))
+            mean = np.concatenate((mean / np.maximum(opacity, 0.25), np.square(opacity)))
         return np.moveaxis(np.sqrt(mean) * 255.0 + 0.5, 0, 2).astype(np.uint8)
 
     def _shade(self, ball: Indices, ray_x: Floats, ray_y: Floats) -> Floats:

@@ -13,16 +13,19 @@ from numpy.typing import NDArray
 
 from atomsim.core.model import Floats, Frame, Indices
 from atomsim.disk import write_whole
-from atomsim.drawing.camera import Camera, View
+from atomsim.drawing.camera import FARTHEST, Camera, View
 from atomsim.drawing.files import MARK, check_picture
 from atomsim.drawing.framing import centred, fit, is_drawable
 from atomsim.drawing.layout import LARGE, Layout, frame_size
-from atomsim.drawing.page import FORMATS, Panel, encode
+from atomsim.drawing.page import DPI, FORMATS, WHITE, Panel, Paper, encode
 from atomsim.drawing.picture import Pixels, draw
 from atomsim.errors import InputError, RunError
 
 _SURROUNDINGS = 2.0
 """What is followed is seen with what is around it: the picture is wider by this factor."""
+
+_EVERYWHERE = np.array([[-FARTHEST] * 3, [FARTHEST] * 3])
+"""Atoms that start here never leave."""
 
 _LARGEST = 16000
 """The longest side that all formats can hold [pixels]."""
@@ -46,11 +49,12 @@ class Row:
         rounds: the round that was asked for in place of each frame.
         paint: gives the colours of each frame.
         view: from where it is seen, the same for all frames.
-        background: red, green and blue from 0 to 1.
+        background: red, green and blue from 0 to 1; None for none.
         start: atom centres at the start of the trajectory [length], which tell what has left the scene since,
             (n_atoms, 3) float64; by default those of the first frame.
         scenery: atoms that need not be seen whole, (n_atoms,) bool; by default none.
         followed: atoms whose centroid stays in the middle of all pictures, (m,) int64; None for a camera that rests.
+        filling: atoms that fill the pictures wherever they are, (m,) int64; None for all that have not left.
     """
 
     title: str
@@ -58,10 +62,11 @@ class Row:
     rounds: tuple[int, ...]
     paint: Paint
     view: View = field(default_factory=View)
-    background: tuple[float, float, float] = (0.96, 0.96, 0.97)
+    background: tuple[float, float, float] | None = (0.96, 0.96, 0.97)
     start: Floats | None = None
     scenery: NDArray[np.bool_] | None = None
     followed: Indices | None = None
+    filling: Indices | None = None
 
     def panels(self, size: tuple[int, int]) -> Iterator[Panel]:
         """Draw one frame after the other; only one is held at a time."""
@@ -75,7 +80,10 @@ class Row:
         return frame.position if self.followed is None else centred(frame.position, self.followed)
 
     def _camera(self, size: tuple[int, int]) -> Camera:
-        """Return the camera of all pictures: around all that has not left, or around what is followed."""
+        """Return the camera of all pictures: around all that has not left, what fills them, or what is followed."""
+        if self.filling is not None:
+            filling = self.filling
+            return fit(self.view, _Mapped(self.frames, lambda frame: frame.position[filling]), size, _EVERYWHERE)
         if self.followed is None:
             return fit(self.view, _Mapped(self.frames, self._placed), size, self.start, self.scenery)
         followed = self.followed
@@ -109,7 +117,14 @@ def notice(frame: Frame) -> str:
     return f"{n_lost} {'atom' if n_lost == 1 else 'atoms'} not drawable" if n_lost else ""
 
 
-def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None, report: Report | None = None) -> None:
+def compose(
+    rows: Sequence[Row],
+    out: Path,
+    size: tuple[int, int] | None = None,
+    report: Report | None = None,
+    paper: Paper = WHITE,
+    dpi: int | None = None,
+) -> None:
     """Write a strip: the same rows give the same bytes, and no half-written file ever stands under its name.
 
     Args:
@@ -117,12 +132,16 @@ def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None,
         out: the file; its extension tells the format: png, jpg, webp, pdf or svg.
         size: width and height of a frame [pixels]; by default one that makes the strip about 2500 pixels wide.
         report: hears how many pictures are drawn.
+        paper: the colours around the pictures; without a colour of the page, those formats will do that have none.
+        dpi: pixels per inch, which say how large it is on paper.
 
     Raises:
         InputError: an extension, a folder or a size that will not do.
         RunError: the file cannot be written.
     """
     check_picture(out, tuple(FORMATS))
+    if paper.page == "none" and out.suffix.lower() in (".jpg", ".jpeg"):
+        raise InputError(f"{out}: a JPEG cannot be transparent; use .png, .webp, .pdf or .svg")
     n_frames = tuple(len(row.frames) for row in rows)
     size = size or frame_size(n_frames)
     check_size(size)
@@ -134,7 +153,7 @@ def compose(rows: Sequence[Row], out: Path, size: tuple[int, int] | None = None,
     if any(panel.notice for row in panels for panel in row):
         layout = replace(layout, has_notices=True)
         _check_layout(layout, out)
-    write_whole(out, encode([row.title for row in rows], panels, layout, out.suffix.lower()))
+    write_whole(out, encode([row.title for row in rows], panels, layout, out.suffix.lower(), paper, dpi or DPI))
 
 
 def _check_layout(layout: Layout, out: Path) -> None:
@@ -147,7 +166,11 @@ def _check_layout(layout: Layout, out: Path) -> None:
 
 
 def frames_to(
-    rows: Sequence[Row], folder: Path, size: tuple[int, int] | None = None, report: Report | None = None
+    rows: Sequence[Row],
+    folder: Path,
+    size: tuple[int, int] | None = None,
+    report: Report | None = None,
+    dpi: int | None = None,
 ) -> list[Path]:
     """Write every frame as a PNG of its own, without text: `round-00250.png`, of several rows `row-2-round-00250.png`.
 
@@ -156,6 +179,7 @@ def frames_to(
         folder: where the files go; made if it does not exist.
         size: width and height of a frame [pixels]; by default 400 by 300.
         report: hears how many pictures are drawn.
+        dpi: pixels per inch, which say how large they are on paper.
 
     Returns:
         The files, in order.
@@ -177,7 +201,7 @@ def frames_to(
     for number, panel in _drawn(rows, size, report):
         prefix = f"row-{number + 1}-" if len(rows) > 1 else ""
         written.append(folder / f"{prefix}round-{panel.round_index:0{digits}}.png")
-        write_whole(written[-1], _png(panel.picture))
+        write_whole(written[-1], _png(panel.picture, dpi))
     return written
 
 
@@ -202,11 +226,11 @@ def check_size(size: tuple[int, int]) -> None:
         raise InputError(f"a frame must be from 16 to 4096 pixels wide and high (got {size[0]}x{size[1]})")
 
 
-def _png(picture: Pixels) -> bytes:
+def _png(picture: Pixels, dpi: int | None) -> bytes:
     from PIL import Image, PngImagePlugin
 
     comments = PngImagePlugin.PngInfo()
     comments.add_text("Comment", MARK)
     content = io.BytesIO()
-    Image.fromarray(picture).save(content, "PNG", pnginfo=comments)
+    Image.fromarray(picture).save(content, "PNG", pnginfo=comments, **({"dpi": (dpi, dpi)} if dpi else {}))
     return content.getvalue()

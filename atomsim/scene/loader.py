@@ -93,22 +93,25 @@ def loads(text: str, name: str = "<scene>", overrides: Iterable[str] = ()) -> Lo
     return _loaded(read_scene_text(text, name), name, overrides)
 
 
+_DIRECTION, _MIDDLE = {"view", "azimuth", "elevation"}, {"look_at", "follow", "close_up"}
+_INSTEAD = (({"view"}, _DIRECTION), ({"azimuth", "elevation"}, {"view"}), (_MIDDLE, _MIDDLE))
+"""Keys of a camera and those in whose place they come."""
+
+
 def camera_with(scene: Scene, changes: Mapping[str, Any]) -> Camera:
     """Return the camera of a scene with some of its keys changed, for those who look from elsewhere.
 
     Args:
         scene: the scene.
         changes: keys of a camera and their values, as a scene has them. A direction by name takes the place of the
-            angles of the scene, and they of it; so do `follow` and `look_at`.
+            angles of the scene, and they of it; so do `look_at`, `follow` and `close_up` of each other.
 
     Raises:
         InputError: everything that is wrong with the changes.
     """
     said = scene.render.camera.model_dump(exclude_unset=True)
-    for keys, others in (({"view"}, {"azimuth", "elevation"}), ({"look_at"}, {"follow"})):
-        for given, replaced in ((keys, others), (others, keys)):
-            if given & set(changes):
-                said = {key: value for key, value in said.items() if key not in replaced}
+    replaced = set().union(*(others for keys, others in _INSTEAD if keys & set(changes)))
+    said = {key: value for key, value in said.items() if key not in replaced}
     nothing = {"shape": "atoms", "positions": [[0, 0, 0]]}
     data = {
         "atomsim": 1,

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from atomsim.arguments import function, path, paths, whole_pair
+from atomsim.arguments import flag, function, path, paths
 from atomsim.compiler.colors import atom_color, rgb
 from atomsim.compiler.selections import SelectionError, atoms_named
 from atomsim.core.model import Floats, Indices
-from atomsim.drawing import Report, Row, compose, frames_to
+from atomsim.drawing import BLACK, WHITE, Paper, Report, Row, compose, frames_to
 from atomsim.errors import InputError, Notice
 from atomsim.scene.language import Camera, Scene
 from atomsim.scene.loader import camera_with
-from atomsim.tasks.cameras import AskedCamera, camera_keys, view_of
+from atomsim.tasks.cameras import AskedCamera, CameraWish, camera_wishes, view_of
 from atomsim.tasks.overview import Overview
 from atomsim.tasks.recompute import broken, laid_out_inside
 from atomsim.tasks.rounds import Latest, Wish, chosen, wishes
+from atomsim.tasks.sizes import AskedSize, Size
 from atomsim.trajectory import Frames, Trajectory
 
 Paths: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
@@ -30,6 +31,9 @@ Hear: TypeAlias = Callable[[Notice], None]
 N_FRAMES = 6
 """How many rounds a strip shows where nobody chose."""
 
+DARK = "#2a2a2d"
+"""What stands behind atoms in a dark picture."""
+
 
 def render(
     trajectories: Paths,
@@ -37,7 +41,10 @@ def render(
     *,
     rounds: str | Sequence[int] | None = None,
     camera: AskedCamera | None = None,
-    size: tuple[int, int] | None = None,
+    size: AskedSize | None = None,
+    dpi: int | None = None,
+    dark: bool = False,
+    transparent: bool = False,
     notice: Hear | None = None,
     report: Report | None = None,
 ) -> None:
@@ -51,8 +58,11 @@ def render(
         rounds: the rounds to show, as numbers or as a text such as on the command line, `"0-2000:100"`; by default
             what each scene says, else the first, the last and four between, closest where most happens.
         camera: from where it is seen, instead of what the scenes say: azimuth and elevation [degrees], or `front`,
-            `side` or `top`, or a mapping with keys of `render.camera` of a scene.
-        size: width and height of a frame [pixels].
+            `side` or `top`, or a mapping with keys of `render.camera` of a scene; or a list of these, for as many rows.
+        size: width and height of a frame [pixels], or a text such as `"8x6cm"`.
+        dpi: pixels per inch of paper; 300 where the size is in centimetres.
+        dark: whether pictures, page and words are for a dark surrounding.
+        transparent: whether there is nothing behind the atoms, so that the picture can be laid over others.
         notice: hears what a user should know about where the frames come from.
         report: hears how many pictures of how many are drawn, at the start and after each.
 
@@ -60,9 +70,9 @@ def render(
         InputError: a trajectory, a round, a size or a name that will not do.
         RunError: the picture cannot be written.
     """
-    out, wish = path("picture", picture), _Wish.of(rounds, camera, size)
+    out, wish = path("picture", picture), _Wish.of(rounds, camera, size, dpi, dark, transparent)
     with _opened(trajectories, notice, report) as found:
-        compose(_rows(found, wish, every=False), out, wish.size, report)
+        compose(_rows(found, wish, every=False), out, wish.size.pixels, report, wish.paper, wish.size.dpi)
 
 
 def render_frames(
@@ -71,7 +81,10 @@ def render_frames(
     *,
     rounds: str | Sequence[int] | None = None,
     camera: AskedCamera | None = None,
-    size: tuple[int, int] | None = None,
+    size: AskedSize | None = None,
+    dpi: int | None = None,
+    dark: bool = False,
+    transparent: bool = False,
     notice: Hear | None = None,
     report: Report | None = None,
 ) -> list[Path]:
@@ -82,9 +95,9 @@ def render_frames(
     Returns:
         The files, in order.
     """
-    into, wish = path("folder", folder), _Wish.of(rounds, camera, size)
+    into, wish = path("folder", folder), _Wish.of(rounds, camera, size, dpi, dark, transparent)
     with _opened(trajectories, notice, report) as found:
-        return frames_to(_rows(found, wish, every=True), into, wish.size, report)
+        return frames_to(_rows(found, wish, every=True), into, wish.size.pixels, report, wish.size.dpi)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,17 +105,31 @@ class _Wish:
     """What the user asks for, checked as far as can be without a scene; None is left to the scenes."""
 
     rounds: tuple[Wish, ...] | None
-    camera: Mapping[str, Any]
-    size: tuple[int, int] | None
+    cameras: tuple[CameraWish, ...]
+    size: Size
+    is_dark: bool
+    is_transparent: bool
 
     @classmethod
-    def of(cls, rounds: Any, camera: Any, size: Any) -> _Wish:
+    def of(cls, rounds: Any, camera: Any, size: Any, dpi: Any, dark: Any, transparent: Any) -> _Wish:
         """Check the arguments of a function."""
         return cls(
             None if rounds is None else wishes(rounds),
-            camera_keys("camera", camera),
-            None if size is None else whole_pair("size", size, "width and height in pixels, such as (640, 480)"),
+            camera_wishes("camera", camera),
+            Size.of(size, dpi),
+            flag("dark", dark),
+            flag("transparent", transparent),
         )
+
+    @property
+    def paper(self) -> Paper:
+        """The colours around the pictures."""
+        paper = BLACK if self.is_dark else WHITE
+        return replace(paper, page="none") if self.is_transparent else paper
+
+    def background(self, said: str) -> tuple[float, float, float] | None:
+        """Return what stands behind the atoms, in place of what a scene says."""
+        return None if self.is_transparent else rgb(DARK if self.is_dark else said)
 
 
 @contextmanager
@@ -119,28 +146,30 @@ def _opened(trajectories: Paths, notice: Hear | None, report: Report | None) -> 
 
 
 def _rows(trajectories: list[Trajectory], wish: _Wish, *, every: bool) -> list[Row]:
-    """Choose the frames of every trajectory and from where they are seen."""
+    """Choose the frames of every trajectory and from where they are seen, a row for each camera."""
     overview = Overview(trajectories)
-    return [_row(trajectory, wish, overview, every=every) for trajectory in trajectories]
+    return [row for trajectory in trajectories for row in _rows_of(trajectory, wish, overview, every=every)]
 
 
-def _row(trajectory: Trajectory, wish: _Wish, overview: Overview, *, every: bool) -> Row:
-    """Choose the frames of one trajectory and from where they are seen."""
+def _rows_of(trajectory: Trajectory, wish: _Wish, overview: Overview, *, every: bool) -> Iterator[Row]:
+    """Yield the rows of one trajectory."""
     scene = laid_out_inside(trajectory.header, trajectory.path).scene
-    camera = camera_with(scene, wish.camera) if wish.camera else scene.render.camera
     rounds, places = _frames(trajectory, wish.rounds, scene.render.rounds, overview, every=every)
     color = _color(scene, trajectory)
-    return Row(
-        title=title_of(trajectory),
-        frames=Frames(trajectory, places.tolist()),
-        rounds=tuple(rounds.tolist()),
-        paint=lambda frame: color,
-        view=view_of(camera, overview.azimuth),
-        background=rgb(scene.render.background),
-        start=trajectory[0].position,
-        scenery=None if camera.width else overview.scenery(trajectory),
-        followed=_followed(scene, camera, trajectory),
-    )
+    for asked in wish.cameras:
+        camera = camera_with(scene, asked.keys) if asked.keys else scene.render.camera
+        yield Row(
+            title=" — ".join(filter(None, (title_of(trajectory), asked.name))),
+            frames=Frames(trajectory, places.tolist()),
+            rounds=tuple(rounds.tolist()),
+            paint=lambda frame: color,
+            view=view_of(camera, overview.azimuth),
+            background=wish.background(scene.render.background),
+            start=trajectory[0].position,
+            scenery=None if camera.width else overview.scenery(trajectory),
+            followed=_selected(scene, camera, "follow", trajectory),
+            filling=_selected(scene, camera, "close_up", trajectory),
+        )
 
 
 def title_of(trajectory: Trajectory) -> str:
@@ -159,14 +188,13 @@ def _color(scene: Scene, trajectory: Trajectory) -> Floats:
         raise broken(trajectory.header, trajectory.path, f"render.colors: {error}") from None
 
 
-def _followed(scene: Scene, camera: Camera, trajectory: Trajectory) -> Indices | None:
-    """Return the atoms that stay in the middle of the picture."""
-    if camera.follow is None:
-        return None
+def _selected(scene: Scene, camera: Camera, key: str, trajectory: Trajectory) -> Indices | None:
+    """Return the atoms that a key of a camera selects."""
+    selection = getattr(camera, key)
     try:
-        return atoms_named(scene, camera.follow)
+        return None if selection is None else atoms_named(scene, selection)
     except SelectionError as error:
-        raise InputError(f"{trajectory.path}: camera.follow: {error}") from None
+        raise InputError(f"{trajectory.path}: camera.{key}: {error}") from None
 
 
 def _frames(

@@ -139,9 +139,49 @@ def test_a_group_is_followed(cli, record):
     assert (picture(cli, "said.h5", "--rounds", "42", "--look-at", "0,0,0") != seen).any()
 
 
+def test_several_cameras_make_several_rows(cli, record):
+    record("out.h5", "title=Bricks")
+    assert words(cli, "out.h5", "--rounds", "0", "--camera", "front", "--camera", "30,20") == [
+        "Bricks — from the front",
+        "round 0",
+        "Bricks — from 30°, 20° up",
+        "round 0",
+    ]
+    cameras = ("--camera", "front", "--camera", "top", "--rounds", "0", "--size", "96x72")
+    assert cli("render", "out.h5", *cameras, "--frames", "rows").code == 0
+    for number, name in enumerate(("front", "top"), 1):
+        with Image.open(f"rows/row-{number}-round-0.png") as image:
+            assert (np.asarray(image) == picture(cli, "out.h5", "--camera", name, "--rounds", "0")).all()
+
+
+def test_a_group_fills_the_picture(cli, record):
+    record("out.h5")
+    near = picture(cli, "out.h5", "--close-up", "brick", "--rounds", "0", "--field-of-view", "40").astype(int)
+    assert (near[:, :, 0] > near[:, :, 2] + 30).mean() > 0.3
+    record("said.h5", "render={camera: {close_up: brick, field_of_view: 40}}")
+    assert (picture(cli, "said.h5", "--rounds", "0") == near).all()
+
+
+def test_dark_transparent_and_measured_on_paper(cli, record):
+    record("out.h5")
+    assert picture(cli, "out.h5", "--dark", "--rounds", "0")[0, 0].tolist() == [42, 42, 45]
+    assert (
+        cli("render", "out.h5", "--transparent", "--size", "1.27x0.9525cm", "--dpi", "200", "--rounds", "0").code == 0
+    )
+    with Image.open("out.png") as image:
+        assert image.getpixel((0, 0))[3] == 0
+        assert image.info["dpi"] == pytest.approx((200, 200), abs=0.01)
+        assert 100 <= image.width < 150
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (("--camera", "front", "--camera", "back"), 'camera.view: needs front, side or top (got "back")'),
+        (("--field-of-view", "150"), "camera.field_of_view: needs 120 or less (got 150)"),
+        (("--size", "640"), "size is written 640x480, in pixels, or 8x6cm; got 640"),
+        (("--dpi", "5"), "dpi: needs a whole number from 20 to 2400 (got 5)"),
+        (("--transparent", "-o", "a.jpg"), "a.jpg: a JPEG cannot be transparent; use .png, .webp, .pdf or .svg"),
         (("--camera", "back"), 'camera.view: needs front, side or top (got "back")'),
         (("--camera", "30"), "--camera needs two numbers, as in 30,20; or front, side or top (got 30)"),
         (("--look-at", "brick"), "--look-at needs three numbers, as in 0,0,5 (got brick)"),
@@ -152,7 +192,7 @@ def test_a_group_is_followed(cli, record):
         (("--follow", "brick[7]"), "out.h5: camera.follow: `brick[7]` is out of range: brick has 1 there, 0 to 0"),
         (
             ("--follow", "brick", "--look-at", "0,0,0"),
-            "camera: `follow` chooses what to look at; leave it or `look_at` out",
+            "camera: say one of `look_at`, `follow` and `close_up`: where to look",
         ),
     ],
 )

@@ -153,7 +153,7 @@ def test_a_setting_that_is_to_blame_has_no_line(cli):
             ("render", "a.h5", "--camera", "30"),
             "--camera needs two numbers, as in 30,20; or front, side or top (got 30)",
         ),
-        (("render", "a.h5", "--size", "640"), "--size needs two numbers, as in 640x480 (got 640)"),
+        (("render", "a.h5", "--size", "640"), "size is written 640x480, in pixels, or 8x6cm; got 640"),
         (("show", "scenes/rods.yaml"), "scenes/rods.yaml: is a scene, not a trajectory of atomsim"),
         (("compare", "a.h5", "b.h5"), "a.h5: no such file"),
         (("verify", "a.h5"), "a.h5: no such file"),

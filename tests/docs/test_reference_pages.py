@@ -35,6 +35,7 @@ EXTRA_EXAMPLES = {
     "jitter",
     "render",
     "follow",
+    "close_up",
     "selections",
     "expect",
     "extends",

@@ -77,6 +77,29 @@ def test_colors_look_like_themselves(color):
     assert abs(shades.mean(axis=0) - color).max() < 0.13
 
 
+def test_without_a_background_only_balls_are_opaque_and_their_edges_have_no_fringe():
+    pixels = picture([[0.0, 0.0, 0.0], [0.5, 1.5, 0.0]], FIREBRICK, background=None)
+    assert pixels.shape == (150, 200, 4)
+    color, opacity = pixels[:, :, :3].astype(int), pixels[:, :, 3]
+    on_gray = picture([[0.0, 0.0, 0.0], [0.5, 1.5, 0.0]], FIREBRICK).astype(int)
+    assert ((opacity > 0) == is_ball(on_gray)).all()
+    assert set(np.unique(opacity)) == {0, 64, 128, 191, 255}  # four samples a pixel
+    assert (color[opacity == 255] == on_gray[opacity == 255]).all()
+    edge = color[(opacity > 0) & (opacity < 255)]
+    assert (edge[:, 0] > 2 * edge[:, 2]).all()  # as red as the balls, whatever lies behind
+
+
+def test_rays_may_be_parallel():
+    view = View(0.0, 0.0, field_of_view=0.0)
+    areas = {is_ball(picture([x, 0.0, 0.0], view=view)).sum() for x in (-200.0, 0.0, 2000.0)}
+    assert len(areas) == 1
+
+
+def test_a_wide_angle_shows_what_is_near_much_larger():
+    areas = [is_ball(picture([x, 0.0, 0.0], view=View(0.0, 0.0, field_of_view=90.0))).sum() for x in (-2.0, 2.0)]
+    assert areas[1] / areas[0] == pytest.approx((7 / 3) ** 2, rel=0.15)  # the eye is 5 before the middle
+
+
 def test_the_lamp_hangs_on_the_left():
     pixels = picture([0.0, 0.0, 0.0], width=3.0).astype(int).sum(axis=2)
     assert pixels[75, 60] > pixels[75, 140]

@@ -6,6 +6,7 @@ import io
 import re
 import weakref
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
@@ -18,6 +19,7 @@ from atomsim.core.model import Frame, Observables, State
 from atomsim.drawing.camera import View
 from atomsim.drawing.files import is_our_picture
 from atomsim.drawing.layout import Layout
+from atomsim.drawing.page import BLACK, WHITE
 from atomsim.drawing.strip import Row, compose, frames_to
 from atomsim.errors import InputError
 
@@ -222,6 +224,62 @@ def test_a_caption_that_does_not_fit_is_shortened_or_left_out(tmp_path, size, ca
     assert words == whole[:captions] or all(
         word.endswith("…") and caption.startswith(word[:-1]) for word, caption in zip(words, whole, strict=True)
     )
+
+
+@pytest.mark.parametrize("dpi", [20, 72, 96, 150, 299, 300, 600, 2400])
+def test_no_pixel_is_lost_at_any_density(tmp_path, dpi):
+    for size in ((96, 72), (97, 71), (101, 63)):
+        compose([row(n_frames=2)], tmp_path / "strip.png", size, dpi=dpi)
+        layout = Layout(size, (2,), (True,), False)
+        assert pixels_of(tmp_path / "strip.png").shape == (layout.height, layout.width, 3)
+        with Image.open(tmp_path / "strip.png") as image:
+            assert image.info["dpi"] == pytest.approx((dpi, dpi), rel=1e-3)
+
+
+def test_a_strip_is_as_large_on_paper_as_its_density_says(tmp_path):
+    compose([row(n_frames=1)], tmp_path / "strip.pdf", (272, 172), dpi=100)
+    layout = Layout((272, 172), (1,), (True,), False)
+    box = re.search(rb"/MediaBox \[ ([0-9. ]+) \]", (tmp_path / "strip.pdf").read_bytes())
+    assert [float(side) for side in box[1].split()] == pytest.approx(
+        [0, 0, layout.width * 0.72, layout.height * 0.72], abs=0.1
+    )
+
+
+def test_a_dark_strip_has_light_words_on_a_dark_page(tmp_path):
+    compose([row()], tmp_path / "light.png", SIZE)
+    compose([row()], tmp_path / "dark.png", SIZE, paper=BLACK)
+    light, dark = pixels_of(tmp_path / "light.png"), pixels_of(tmp_path / "dark.png")
+    top = Layout(SIZE, (3,), (True,), False).corner(0, 0)[1]
+    assert (light[:top] < 128).any(axis=2).sum() == pytest.approx((dark[:top] > 128).any(axis=2).sum(), rel=0.3)
+    assert dark[0, 0].tolist() == [28, 28, 30]
+
+
+def test_a_transparent_strip_is_opaque_where_atoms_and_letters_are(tmp_path):
+    clear = replace(WHITE, page="none")
+    for extension in ("png", "webp"):
+        compose([row(background=None)], tmp_path / f"strip.{extension}", SIZE, paper=clear)
+        with Image.open(tmp_path / f"strip.{extension}") as image:
+            opacity = np.asarray(image.convert("RGBA"))[:, :, 3]
+        assert 0.02 < (opacity == 255).mean() < 0.5
+        assert (opacity == 0).mean() > 0.5
+        assert opacity[0, 0] == 0
+    [file] = frames_to([row(n_frames=1, background=None)], tmp_path / "film", SIZE)
+    with Image.open(file) as image:
+        assert (image.mode, image.size) == ("RGBA", SIZE)
+
+
+def test_a_transparent_jpeg_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"strip.jpg: a JPEG cannot be transparent; use .png, .webp, .pdf or .svg$"):
+        compose([row(background=None)], tmp_path / "strip.jpg", SIZE, paper=replace(WHITE, page="none"))
+
+
+def test_a_close_up_is_filled_by_some_atoms_wherever_they_go():
+    """The first three of twelve go 2 to the right between the first frame and the last."""
+    camera = row(filling=np.arange(3))._camera(SIZE)
+    assert camera.width < row()._camera(SIZE).width
+    flown = [frame(0), frame(50, 400.0)]
+    far = row(frames=flown, rounds=(0, 50), filling=np.arange(3))._camera(SIZE)
+    assert far.width > 300
 
 
 def test_single_frames(tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 from atomsim.drawing.camera import (
     CLOSEST_EYE,
+    CLOSEST_WIDE_EYE,
     EYE_DISTANCE,
     Camera,
     View,
@@ -91,6 +92,14 @@ def test_the_eye_keeps_its_distance():
     assert Camera.of(View(), (0, 0, 0), 0.1).convergence == 1 / CLOSEST_EYE
 
 
+def test_the_field_of_view_is_the_angle_of_the_width():
+    for angle in (5.0, 40.0, 90.0, 120.0):
+        camera = Camera.of(View(field_of_view=angle), (0, 0, 0), 40.0)
+        assert 2 * np.degrees(np.arctan(20.0 * camera.convergence)) == pytest.approx(angle)
+    assert Camera.of(View(field_of_view=0.0), (0, 0, 0), 40.0).convergence == 0.0
+    assert Camera.of(View(field_of_view=120.0), (0, 0, 0), 0.1).convergence == 1 / CLOSEST_WIDE_EYE
+
+
 @pytest.mark.parametrize("convergence", [0.0, 0.02, 0.07])
 def test_outline_is_that_of_the_projected_sphere(convergence):
     seen = np.random.default_rng(2).normal(size=(3, 30)) * 4
@@ -120,6 +129,8 @@ def test_balls_at_and_behind_the_eye_are_not_before_it():
         ({"elevation": float("inf")}, "camera: elevation must be a finite number of degrees (got inf)"),
         ({"look_at": (0.0, 2e9, 0.0)}, "camera: look_at must be within ±1e+09 (got [0.0, 2000000000.0, 0.0])"),
         ({"width": 0.0}, "camera: width must be from 0.001 to 1e+09 (got 0)"),
+        ({"field_of_view": 121.0}, "camera: field_of_view must be from 0 to 120 (got 121)"),
+        ({"field_of_view": float("nan")}, "camera: field_of_view must be from 0 to 120 (got nan)"),
         ({"width": float("nan")}, "camera: width must be from 0.001 to 1e+09 (got nan)"),
     ],
 )

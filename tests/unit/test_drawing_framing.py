@@ -33,6 +33,16 @@ def test_whole_balls_fit_and_fill_the_picture(view):
     assert max(horizontal, vertical) == pytest.approx(1 / MARGIN, rel=1e-3)
 
 
+@pytest.mark.parametrize("angle", [0.0, 30.0, 60.0, 90.0, 120.0])
+def test_all_fits_whatever_the_field_of_view(angle):
+    atoms = np.random.default_rng(3).normal(size=(200, 3)) * [9, 4, 2] + [5, -3, 1]
+    camera = fit(View(40, 25, field_of_view=angle), [atoms], SIZE)
+    assert max(reach(camera, atoms)) == pytest.approx(1 / MARGIN, rel=0.02)
+    around = fit(View(40, 25, field_of_view=angle, look_at=(6.0, -2.0, 1.0)), [atoms], SIZE)
+    assert around.centre == (6.0, -2.0, 1.0)
+    assert max(reach(around, atoms)) == pytest.approx(1 / MARGIN, rel=0.02)
+
+
 def test_one_atom_is_large_and_in_the_middle():
     camera = fit(View(), [np.array([[5.0, 6.0, 7.0]])], SIZE)
     assert camera.centre == pytest.approx((5, 6, 7))

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from atomsim.cli.options import file_to_write, number, numbers, output, pair
+from atomsim.cli.options import file_to_write, number, numbers, output, pair, whole_number
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
@@ -40,8 +40,11 @@ def render(
         ),
     ] = None,
     camera: Annotated[
-        str | None,
-        typer.Option(metavar="AZ,EL", help="Direction and height of the viewer [degrees], or front, side or top."),
+        list[str] | None,
+        typer.Option(
+            metavar="AZ,EL",
+            help="Direction and height of the viewer [degrees], or front, side or top; if repeated, a row for each.",
+        ),
     ] = None,
     look_at: Annotated[
         str | None, typer.Option(metavar="X,Y,Z", help="The point in the middle of the picture [length].")
@@ -55,7 +58,26 @@ def render(
     follow: Annotated[
         str | None, typer.Option(metavar="GROUP", help="Atoms that stay in the middle of the picture.")
     ] = None,
-    size: Annotated[str | None, typer.Option(metavar="WxH", help="Size of one frame [pixels].")] = None,
+    close_up: Annotated[str | None, typer.Option(metavar="GROUP", help="Atoms that fill the picture.")] = None,
+    field_of_view: Annotated[
+        float | None,
+        typer.Option(
+            metavar="ANGLE",
+            parser=number("--field-of-view", 0.0),
+            help="Angle that the width takes [degrees]: 60 is a wide angle, 0 has parallel rays.",
+        ),
+    ] = None,
+    size: Annotated[
+        str | None, typer.Option(metavar="WxH", help="Size of one frame [pixels], or on paper, as in 8x6cm.")
+    ] = None,
+    dpi: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", parser=whole_number("--dpi", 1), help="Pixels per inch of paper; for a size in cm, 300."
+        ),
+    ] = None,
+    dark: Annotated[bool, typer.Option("--dark", help="Draw for a dark surrounding.")] = False,
+    transparent: Annotated[bool, typer.Option("--transparent", help="Draw nothing behind the atoms.")] = False,
     frames: Annotated[
         Path | None,
         typer.Option(
@@ -71,21 +93,21 @@ def render(
 
     if frames is not None and output is not None:
         raise InputError("--frames writes pictures into its folder, and no strip; -o does not go with it")
-    asked = _camera(camera, look_at, width, follow)
-    pixels = None if size is None else pair(size, "x", int, "--size", "640x480")
+    keys = {"width": width, "follow": follow, "close_up": close_up, "field_of_view": field_of_view}
+    wishes: dict[str, Any] = {
+        "rounds": rounds,
+        "camera": _cameras(camera, look_at, keys),
+        "size": size,
+        "dpi": dpi,
+        "dark": dark,
+        "transparent": transparent,
+        "notice": _notice,
+    }
     if frames is not None:
         if not force:
             _require_own(frames.glob("*round-*.png"))
         with Progress("picture") as progress:
-            written = pictures.render_frames(
-                trajectories,
-                frames,
-                rounds=rounds,
-                camera=asked,
-                size=pixels,
-                notice=_notice,
-                report=progress.report,
-            )
+            written = pictures.render_frames(trajectories, frames, **wishes, report=progress.report)
         say(f"{frames}: {len(written)} pictures, {written[0].name} to {written[-1].name}")
         return
     first = trajectories[0]
@@ -93,15 +115,7 @@ def render(
     if not force:
         _require_own([picture])
     with Progress("picture") as progress:
-        pictures.render(
-            trajectories,
-            picture,
-            rounds=rounds,
-            camera=asked,
-            size=pixels,
-            notice=_notice,
-            report=progress.report,
-        )
+        pictures.render(trajectories, picture, **wishes, report=progress.report)
     say(str(picture))
 
 
@@ -119,15 +133,19 @@ def _notice(notice: Notice) -> None:
     tell(with_remedies(notice))
 
 
-def _camera(direction: str | None, look_at: str | None, width: float | None, follow: str | None) -> dict[str, Any]:
-    """Return the keys of a camera that are asked for."""
-    asked: dict[str, Any] = {"view": None, "look_at": None, "width": width, "follow": follow}
-    if direction is not None and direction.strip().isalpha():
-        asked["view"] = direction.strip().lower()
-    elif direction is not None:
-        asked["azimuth"], asked["elevation"] = pair(direction, ",", float, "--camera", "30,20; or front, side or top")
+def _cameras(directions: list[str] | None, look_at: str | None, keys: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return what is asked of the cameras, one for each direction, or one without."""
     if look_at is not None:
-        asked["look_at"] = numbers(look_at, ",", float)
-        if len(asked["look_at"]) != 3:
+        keys["look_at"] = numbers(look_at, ",", float)
+        if len(keys["look_at"]) != 3:
             raise InputError(f"--look-at needs three numbers, as in 0,0,5 (got {look_at})")
-    return {key: value for key, value in asked.items() if value is not None}
+    asked = {key: value for key, value in keys.items() if value is not None}
+    return [asked | direction for direction in map(_direction, directions or [""])]
+
+
+def _direction(text: str) -> dict[str, Any]:
+    """Read `30,20`, or the name of a direction."""
+    if not text or text.strip().isalpha():
+        return {"view": text.strip().lower()} if text else {}
+    azimuth, elevation = pair(text, ",", float, "--camera", "30,20; or front, side or top")
+    return {"azimuth": azimuth, "elevation": elevation}

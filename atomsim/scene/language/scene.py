@@ -70,13 +70,17 @@ class Camera(Declaration):
     """The visible width [length]; by default all atoms shown fit that have not left the scene."""
     follow: Selection | None = None
     """Atoms that stay in the middle of the picture, in place of `look_at`; by default nothing is followed."""
+    close_up: Selection | None = None
+    """Atoms that fill the picture, in place of `look_at`; by default all that have not left."""
+    field_of_view: Annotated[float, Field(allow_inf_nan=False, ge=0, le=120)] | None = None
+    """Angle that the width takes [degrees]: 60 is a wide angle, 0 has parallel rays; by default 11.4."""
 
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> Camera:
         if self.view is not None and (self.azimuth is not None or self.elevation is not None):
             raise PydanticCustomError("together", "`view` stands for azimuth and elevation; leave one or the other out")
-        if self.follow is not None and self.look_at is not None:
-            raise PydanticCustomError("together", "`follow` chooses what to look at; leave it or `look_at` out")
+        if sum(one is not None for one in (self.look_at, self.follow, self.close_up)) > 1:
+            raise PydanticCustomError("together", "say one of `look_at`, `follow` and `close_up`: where to look")
         return self
 
 

@@ -106,9 +106,10 @@ def _colored(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
 
 def _followed(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     camera = _mapping(_mapping(data.get("render")).get("camera"))
-    for path, text in _texts(camera.get("follow"), ("render", "camera", "follow")):
-        with suppress(SelectionSyntaxError):
-            yield path, parse_selection(text).group
+    for key in ("follow", "close_up"):
+        for path, text in _texts(camera.get(key), ("render", "camera", key)):
+            with suppress(SelectionSyntaxError):
+                yield path, parse_selection(text).group
 
 
 def _silenced(data: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
