@@ -26,9 +26,17 @@ class Kind:
     follows_from: Mapping[str, str] = field(default_factory=dict)
 
 
+ASTRAY = ("unsupported", "too-late", "hole", "tunnelling", "over-damped", "over-stiff", "weld", "blow-up", "hovers")
+"""Who is said to go astray in one of these ways is not said to have missed what it should have touched as well."""
+
+CRUSHED = ("floppy", "prestressed", "overpowered", "blow-up")
+"""What is crushed in one of these ways is not said to pass through itself as well."""
+
 KINDS: dict[str, Kind] = {
-    "ghost-contact": Kind("warning", is_mechanical=True),
-    "self-pass": Kind("warning"),
+    "ghost-contact": Kind(
+        "warning", is_mechanical=True, follows_from=dict.fromkeys(("overpowered", "blow-up"), "groups")
+    ),
+    "self-pass": Kind("warning", follows_from=dict.fromkeys(CRUSHED, "groups")),
     "tunnelling": Kind("warning", is_mechanical=True),
     "hole": Kind("warning", is_mechanical=True),
     "floppy": Kind("warning", is_mechanical=True, follows_from={"in-pieces": "groups", "rule-misses-group": "groups"}),
@@ -48,13 +56,16 @@ KINDS: dict[str, Kind] = {
     "collision-of-held": Kind("warning"),
     "overlap-at-start": Kind("warning", is_mechanical=True, follows_from={"weld": "collisions"}),
     "prestressed": Kind("warning", is_mechanical=True),
-    "never-touches": Kind("warning"),
-    "collision-never": Kind("note"),
+    "never-touches": Kind("warning", follows_from=dict.fromkeys(ASTRAY, "groups")),
+    "collision-never": Kind("note", follows_from=dict.fromkeys((*ASTRAY, "never-touches"), "groups")),
     "over-damped": Kind("warning"),
     "symmetric": Kind("warning", is_mechanical=True),
     "coarse-record": Kind("note"),
     "off-camera": Kind("warning", is_mechanical=True),
-    "overpowered": Kind("warning"),
+    "overpowered": Kind(
+        "warning",
+        follows_from=dict.fromkeys(("prestressed", "tunnelling", "over-stiff", "blow-up", "force-on-held"), "groups"),
+    ),
     "energy-grows": Kind("warning"),
     "blow-up": Kind("warning"),
     "left-scene": Kind("note"),

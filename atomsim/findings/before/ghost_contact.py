@@ -33,8 +33,8 @@ def _overlapping(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
     """Yield pairs of groups that overlap at the start, with the smallest distance."""
     position = np.ascontiguousarray(subject.state.position.T)
     first, second = near_pairs(position, None, GRAZE)
-    may_pass = _may_pass(subject, first, second)
-    first, second = first[may_pass], second[may_pass]
+    passing = may_pass(subject, first, second)
+    first, second = first[passing], second[passing]
     squared = pair_squares(position, first, second)
     key = subject.group[first] * len(subject.model.groups) + subject.group[second]
     for pair in distinct([key]).tolist():
@@ -42,14 +42,14 @@ def _overlapping(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
         yield one, other, math.sqrt(float(squared[key == pair].min())), 0
 
 
-def _may_pass(subject: Subject, first: Indices, second: Indices) -> Mask:
+def may_pass(subject: Subject, first: Indices, second: Indices) -> Mask:
     """Return which pairs of different groups, not both held, nothing is said of: no collision, no common bond."""
     one, other = subject.group[first], subject.group[second]
-    may_pass: Mask = (one != other) & ~subject.are_joined[one, other]
-    may_pass &= ~(subject.is_held[first] & subject.is_held[second])
+    passing: Mask = (one != other) & ~subject.are_joined[one, other]
+    passing &= ~(subject.is_held[first] & subject.is_held[second])
     for table in subject.model.collisions:
-        may_pass[may_pass] = ~is_mentioned(table, first[may_pass], second[may_pass])
-    return may_pass
+        passing[passing] = ~is_mentioned(table, first[passing], second[passing])
+    return passing
 
 
 def _crossed(subject: Subject) -> Iterator[tuple[int, int, float, int]]:
@@ -77,7 +77,7 @@ def _symptom(subject: Subject, one: int, other: int, distance: float, round_inde
     if round_index:
         near = f"come nearer than {GRAZE:g} in round {round_index}"
     return Symptom(
-        at=("groups", names[_lacking(subject, one, other)]),
+        at=("groups", names[lacking(subject, one, other)]),
         names=tuple(("groups", name) for name in names),
         message=(f"{names[0]} and {names[1]} {near} and may not touch: they pass through one another"),
         remedy={"collisions": {subject.new_name("collisions", "_".join(names)): {"between": names}}},
@@ -85,7 +85,7 @@ def _symptom(subject: Subject, one: int, other: int, distance: float, round_inde
     )
 
 
-def _lacking(subject: Subject, one: int, other: int) -> int:
+def lacking(subject: Subject, one: int, other: int) -> int:
     """Return which of two groups lacks the collision: the one without any, or else the one that moves; else the later.
 
     Returns:

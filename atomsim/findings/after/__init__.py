@@ -1,0 +1,1 @@
+"""Diagnoses after a run: what its frames show, a kind a file."""

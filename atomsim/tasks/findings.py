@@ -1,0 +1,48 @@
+"""What a run shows to be missing or wrong, with the lines of the scene that a person wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from atomsim.errors import AtomsimError, Mark
+from atomsim.findings.after.diagnose import examine_run
+from atomsim.findings.after.look import Run
+from atomsim.findings.before.diagnose import examine
+from atomsim.findings.finding import Finding
+from atomsim.findings.subject import Subject
+from atomsim.scene import LoadedScene, load
+from atomsim.scene.source import KeyPath, Source
+from atomsim.tasks.recompute import compile_inside
+from atomsim.trajectory import Header, Trajectory
+
+
+def findings(trajectory: Trajectory) -> list[Finding]:
+    """Return what can be found in a scene and in a run of it, those before the run first.
+
+    Args:
+        trajectory: the run.
+
+    Raises:
+        InputError: the scene inside is not that of the frames.
+    """
+    header = trajectory.header
+    loaded, model, state = compile_inside(header, trajectory.path)
+    loaded = LoadedScene(loaded.scene, _written(header, loaded.source))
+    before = examine(loaded, model, state).findings
+    run = Run(header.rounds, header.record_every, int(trajectory.rounds[-1]), trajectory.end)
+    after = examine_run(Subject(loaded.scene, loaded.source, model, state), run, trajectory, before)
+    return [*before, *after]
+
+
+def _written(header: Header, inside: Source) -> Source:
+    """Return where the scene was written: in its file, if that still says the same, else as far as was recorded."""
+    try:
+        file = load(Path(header.scene_name), header.overrides).source
+        if file.text == header.scene:
+            return file
+    except AtomsimError:
+        pass  # it is gone, or another one by now
+    marks: dict[KeyPath, Mark] = {
+        (origin.section, origin.name): Mark(origin.file, origin.line, 1) for origin in header.origins
+    }
+    return Source(header.scene_name, inside.text, header.overrides, marks)
