@@ -11,6 +11,7 @@ from atomsim.cli.commands.measure import measure
 from atomsim.cli.commands.plot import plot
 from atomsim.cli.commands.recover import recover
 from atomsim.cli.commands.render import render
+from atomsim.cli.commands.report import report
 from atomsim.cli.commands.run import run
 from atomsim.cli.commands.scenes import new, scenes
 from atomsim.cli.commands.schema import schema
@@ -31,7 +32,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (scenes, new, run, render, measure, plot, check, show, compare, verify, recover, schema):
+for command in (scenes, new, run, render, measure, plot, check, show, report, compare, verify, recover, schema):
     app.command(cls=Command)(command)
 app.command("test", cls=Command)(try_out)
 app.add_typer(golden, name="golden")

@@ -20,6 +20,7 @@ from atomsim.trajectory import count_frames, trajectory_bytes
 
 if TYPE_CHECKING:
     from atomsim.findings.before.diagnose import Examination
+    from atomsim.findings.finding import Finding
     from atomsim.trajectory import Trajectory
 
 BYTES_OF_PROGRAM = 60_000_000
@@ -59,12 +60,17 @@ def describe_model(model: Model, state: State, rounds: int, record_every: int) -
 def describe_findings(examination: Examination) -> Iterator[str]:
     """Yield what was found in a scene, each with the YAML that takes it away, and what was not looked for."""
     for found in examination.findings:
-        yield printable(str(found))
-        if found.remedy:
-            yield "  remedy:"
-            yield from (f"    {line}" for line in found.remedy.splitlines())
+        yield from finding_lines(found)
     if examination.skipped:
         yield f"  skipped    for so many atoms: {', '.join(examination.skipped)}"
+
+
+def finding_lines(found: Finding) -> Iterator[str]:
+    """Yield a finding, and the YAML that takes it away."""
+    yield printable(str(found))
+    if found.remedy:
+        yield "  remedy:"
+        yield from (f"    {line}" for line in found.remedy.splitlines())
 
 
 def describe_trajectory(trajectory: Trajectory) -> list[str]:

@@ -27,22 +27,25 @@ def findings(trajectory: Trajectory) -> list[Finding]:
     """
     header = trajectory.header
     loaded, model, state = compile_inside(header, trajectory.path)
-    loaded = LoadedScene(loaded.scene, _written(header, loaded.source))
+    loaded = with_places(header, loaded)
     before = examine(loaded, model, state).findings
     run = Run(header.rounds, header.record_every, int(trajectory.rounds[-1]), trajectory.end)
     after = examine_run(Subject(loaded.scene, loaded.source, model, state), run, trajectory, before)
     return [*before, *after]
 
 
-def _written(header: Header, inside: Source) -> Source:
-    """Return where the scene was written: in its file, if that still says the same, else as far as was recorded."""
+def with_places(header: Header, inside: LoadedScene) -> LoadedScene:
+    """Return the scene inside a trajectory with the places where a person wrote it.
+
+    They are in its file, if that still says the same, else as far as was recorded.
+    """
     try:
-        file = load(Path(header.scene_name), header.overrides).source
-        if file.text == header.scene:
+        file = load(Path(header.scene_name), header.overrides)
+        if file.source.text == header.scene:
             return file
     except AtomsimError:
         pass  # it is gone, or another one by now
     marks: dict[KeyPath, Mark] = {
         (origin.section, origin.name): Mark(origin.file, origin.line, 1) for origin in header.origins
     }
-    return Source(header.scene_name, inside.text, header.overrides, marks)
+    return LoadedScene(inside.scene, Source(header.scene_name, inside.source.text, header.overrides, marks))
