@@ -25,7 +25,8 @@ body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(
 h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 img { max-width: 100%; height: auto; background: #f5f5f7; border-radius: 4px; }
 table { border-collapse: collapse; width: 100%; }
-th, td { text-align: left; vertical-align: top; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid var(--line); } th { font-weight: 500; color: var(--faint); white-space: nowrap; }
+th, td { text-align: left; vertical-align: top; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid var(--line); }
+th { font-weight: 500; color: var(--faint); white-space: nowrap; }
 td { overflow-wrap: anywhere; } pre { background: color-mix(in srgb, var(--ink) 7%, var(--paper)); padding: .6rem .8rem;
   border-radius: 4px; overflow-x: auto; margin: .3rem 0; } code { font-size: .9em; }
 .bad { color: var(--bad); font-weight: 600; } .good { color: var(--good); } .faint { color: var(--faint); }

@@ -12,6 +12,7 @@ from atomsim.core.model import Floats, Frame, GroupSpan, Indices
 from atomsim.core.pairs.near import near_pairs
 from atomsim.findings.after.look import Look, Run
 from atomsim.findings.before.declared import sides
+from atomsim.findings.before.hole import is_backed
 from atomsim.findings.finding import Symptom
 from atomsim.findings.subject import Subject
 from atomsim.scene.language import PlaneGroup
@@ -128,6 +129,8 @@ class Crossings:
     def _hole(self) -> Iterator[Symptom]:
         """Yield atoms that went through a surface where it has nothing to touch."""
         for surface, group, tables, crossing in self._found("hole"):
+            if self._is_backed(surface, group):
+                continue
             yield Symptom(
                 at=("groups", surface),
                 names=_names(surface, group, tables),
@@ -137,6 +140,13 @@ class Crossings:
                 ),
                 rounds=(crossing.round_index,),
             )
+
+    def _is_backed(self, surface: str, group: str) -> bool:
+        """Tell whether something else that a group may touch lies behind every hole of a surface."""
+        spans = {span.name: span for span in self._subject.model.groups}
+        plane = self._subject.scene.groups[surface]
+        assert isinstance(plane, PlaneGroup)  # by `_surfaces`
+        return is_backed(self._subject, spans[surface], plane, spans[group])
 
     def _pushed_through(self) -> Iterator[Symptom]:
         """Yield atoms that were pushed through a surface though they touched it."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from atomsim.core.model import CollisionTable, Floats, Frame
+from atomsim.core.model import Between, CollisionTable, Floats, Frame
 from atomsim.core.numpy_backend.stepper import NumpyStepper
 from atomsim.core.pairs.collisions import table_pairs_near
 from atomsim.core.pairs.near import pair_squares
@@ -27,7 +27,7 @@ FARTHEST = 1e4
 CREEP = 1e-6
 """What comes nearer more slowly than this does not come nearer [length per round]."""
 
-SOON = 10.0
+SOON = 20.0
 """So many times the length of the run may pass until a meeting that it was too short for."""
 
 
@@ -40,6 +40,7 @@ class Touches:
 
     def __init__(self, subject: Subject, run: Run) -> None:
         self._subject = subject
+        self._run = run
         self._tables = subject.model.collisions
         self._ends: list[Look] = []
         self._everything = np.ones(subject.model.n_atoms, dtype=bool)
@@ -128,9 +129,11 @@ class Touches:
 
     def _too_late(self) -> Iterator[Symptom]:
         """Yield collisions of which no pair touched, but would have soon after the end."""
+        if self._run.end.kind != "finished":
+            return
         for index, table in enumerate(self._tables):
             names = self.names_of(index)
-            if self.has_met(index) or len(names) < 2:
+            if self.has_met(index) or not any(isinstance(block, Between) for block in table.blocks):
                 continue
             approach = self.approach(index, self._everything)
             round_index = approach.meets_in

@@ -30,7 +30,7 @@ def hole(subject: Subject) -> Iterator[Symptom]:
             continue
         atoms = np.arange(span.start, span.stop)
         passing = [group for group in _partners(subject, atoms) if reach >= CONTACT + _half_extent(subject, group)]
-        passing = [group for group in passing if not _is_backed(subject, span, plane, group)]
+        passing = [group for group in passing if not is_backed(subject, span, plane, group)]
         if passing:
             yield _symptom(subject, span, plane, reach, [group.name for group in passing])
 
@@ -79,7 +79,7 @@ def _half_extent(subject: Subject, span: GroupSpan) -> float:
     return float(np.sqrt(np.square(position - position.mean(axis=0)).sum(axis=1).max()))
 
 
-def _is_backed(subject: Subject, span: GroupSpan, plane: PlaneGroup, group: GroupSpan) -> bool:
+def is_backed(subject: Subject, span: GroupSpan, plane: PlaneGroup, group: GroupSpan) -> bool:
     """Return whether something else that a group may touch lies behind the middle of every cell."""
     atoms = np.arange(group.start, group.stop)
     others = may_touch(subject.model.collisions, atoms, subject.model.n_atoms)
