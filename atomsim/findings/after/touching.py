@@ -152,7 +152,8 @@ class Touches:
 
     def _never_touches(self) -> Iterator[Symptom]:
         """Yield groups that are not held, may touch others, and touched none."""
-        subject, met = self._subject, self.met()
+        subject = self._subject
+        met = np.isin(subject.body, subject.body[self.met()])  # what is one body touches as one
         for number, span in enumerate(subject.model.groups):
             atoms = slice(span.start, span.stop)
             indices = [i for i, table in enumerate(self._tables) if number in self._groups(table)]
