@@ -7,7 +7,7 @@ from pathlib import Path
 
 from atomsim.compiler import compile_scene
 from atomsim.compiler.colors import atom_color
-from atomsim.drawing import View
+from atomsim.drawing import View, direction_of
 from atomsim.drawing.files import is_our_picture
 from atomsim.drawing.mode import draw_mode
 from atomsim.errors import InputError, Remedy
@@ -37,7 +37,8 @@ def draw_modes(loaded: LoadedScene, folder: Path, *, replace: bool = False) -> l
     model, state = compile_scene(loaded)
     subject = Subject(loaded.scene, loaded.source, model, state)
     color = atom_color(loaded.scene)
-    view = View(**{**loaded.scene.render.camera.model_dump(), "look_at": None, "width": None})
+    camera = loaded.scene.render.camera
+    view = View(*direction_of(camera.view, camera.azimuth, camera.elevation, camera.up), camera.up)
     drawn = []
     for kind, loose in _all_loose(subject):
         if loose.found.mode is None:

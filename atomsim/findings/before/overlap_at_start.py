@@ -24,8 +24,9 @@ DEEP = 1.9
 def overlap_at_start(subject: Subject) -> Iterator[Symptom]:
     """Find pairs that may collide, are not bound to each other, and overlap before anything has moved."""
     position = np.ascontiguousarray(subject.state.position.T)
+    jitter = subject.scene.jitter.amplitude if subject.scene.jitter is not None else 0.0
     for table in subject.model.collisions:
-        first, second = table_pairs_near(table, position, DEEP)
+        first, second = table_pairs_near(table, position, max(0.0, DEEP - 2.0 * jitter))
         is_loose = ~subject.are_bound(first, second)
         first, second = first[is_loose], second[is_loose]
         if first.size:
