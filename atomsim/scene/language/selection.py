@@ -46,7 +46,7 @@ def parse_selection(text: str) -> SelectionPart:
     match = _EXPRESSION.fullmatch(normalised(text))
     if match is None or not is_name(match[1]):
         raise SelectionSyntaxError(
-            f"`{readable(text)}` is no selection; write `ring`, `ring[3]`, `ring[0:10]` or `all`"
+            f"`{readable(text)}` is no selection; write `ring`, `ring[3]`, `ring[0:10]`, `ring.0` (a copy) or `all`"
         )
     group, copy, inside = match.groups()
     if group == "all" and (inside, copy) != (None, None):
