@@ -27,8 +27,8 @@ OPTIONS = "|".join({option for parameter in PARAMETERS for option in parameter.o
 TYPED = re.compile(rf"(?<![\w-])({OPTIONS})(?![\w-])|\batomsim ({COMMANDS})\b")
 """What people type after a prompt: options and commands."""
 
-PLACES = {"--set "}
-"""How the place of a setting is called in messages, as a file is called by its name."""
+PLACES = {"--set ", "# Written by "}
+"""How the place of a setting is called in messages, as a file is called by its name; what stands in files of ours."""
 
 
 def texts(path: Path) -> Iterator[tuple[int, str]]:
