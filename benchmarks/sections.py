@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from benchmarks import cold_start, fluid_scaling, large_body, pour, recording, rounds
+from benchmarks import cold_start, fluid_scaling, large_body, measuring, pour, recording, rounds
 from benchmarks.tables import Answer, Table
 from benchmarks.timing import Results
 
@@ -31,6 +31,7 @@ SECTIONS = {
     "pour": Section(pour.measure, pour.tables, lambda _: []),
     "cold": Section(cold_start.measure, cold_start.tables, cold_start.answers),
     "recording": Section(recording.measure, recording.tables, recording.answers),
+    "measuring": Section(measuring.measure, measuring.tables, measuring.answers),
     "memory": Section(large_body.measure, large_body.tables, large_body.answers),
 }
 

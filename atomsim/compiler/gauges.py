@@ -165,8 +165,15 @@ class _Resolver:
         sides = self._sides()
         return as_index(sides[0]) if sides else slice(0, self._subject.n_atoms)
 
+    def _two_sides(self) -> tuple[Indices, Indices]:
+        """Return the atoms of two selections that are not the same."""
+        first, second = self._sides()
+        if np.array_equal(first, second):
+            raise MeasureError("both selections are the same atoms")
+        return first, second
+
     def _pair(self) -> tuple[Atoms, Atoms]:
-        first, second = map(as_index, self._sides())
+        first, second = map(as_index, self._two_sides())
         return first, second
 
     def _body(self) -> rigid.Body:
@@ -188,13 +195,13 @@ class _Resolver:
         return near.Gap(left, right)
 
     def _winding(self) -> Winding:
-        string, body = self._sides()
+        string, body = self._two_sides()
         self._require_two(string, "cannot wind about anything")
         self._require_two(body, "has no axis to wind about")
         return Winding(as_index(string), as_index(body))
 
     def _crossings(self) -> Crossings:
-        left, right = self._sides()
+        left, right = self._two_sides()
         for string in (left, right):
             self._require_two(string, "crosses nothing")
         return Crossings(as_index(left), as_index(right))

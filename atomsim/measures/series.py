@@ -117,7 +117,18 @@ def _blocks(trajectory: Trajectory, gauges: Sequence[Gauge], frames: Indices) ->
         nothing = np.empty((3, 0, len(frames)))
         yield Block(nothing, nothing, {name: series[frames] for name, series in trajectory.observables.items()})
         return
-    yield from blocks(trajectory[int(frame)] for frame in frames)
+    yield from _read_ahead(blocks(trajectory[int(frame)] for frame in frames))
+
+
+def _read_ahead(coming: Iterator[Block]) -> Iterator[Block]:
+    """Yield blocks, each while the next is read: taking digests, which takes longest, leaves the interpreter free."""
+    from concurrent.futures import ThreadPoolExecutor  # only what reads frames needs it
+
+    with ThreadPoolExecutor(1) as reader:
+        following = reader.submit(next, coming, None)
+        while (block := following.result()) is not None:
+            following = reader.submit(next, coming, None)
+            yield block
 
 
 def series_of(trajectory: Trajectory, gauges: Mapping[Key, Gauge]) -> dict[Key, Floats]:

@@ -6,7 +6,6 @@ import os
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
@@ -32,6 +31,10 @@ MEASURES = "measures, such as `height of ring`, at least one"
 
 MOST_GROUPS = 4
 """Of so many groups height and speed are measured where nobody says what to measure."""
+
+
+class UnfitMeasureError(InputError):
+    """A measure that makes no sense for the atoms that it is taken of."""
 
 
 def measure(
@@ -92,12 +95,20 @@ def resolved(
     """
     scene = laid_out_inside(trajectory.header, trajectory.path).scene
     subject = subject_of(trajectory, scene)
-    if measures is None:
-        asked = default_measures(scene, subject)
-    else:
-        texts = [measures] if isinstance(measures, str) else arguments.sequence("measures", measures, MEASURES)
-        asked = tuple(map(read_measure, texts))
-    return asked, tuple(_gauge(one, subject, trajectory.path) for one in asked)
+    asked = default_measures(scene, subject) if measures is None else tuple(map(read_measure, texts_of(measures)))
+    try:
+        return asked, tuple(gauge(one, subject) for one in asked)
+    except UnfitMeasureError as error:
+        raise InputError(f"{trajectory.path}: {error}") from None
+
+
+def texts_of(measures: str | Sequence[str]) -> list[str]:
+    """Return measures that are one text or several as a list.
+
+    Raises:
+        InputError: they are neither.
+    """
+    return [measures] if isinstance(measures, str) else arguments.sequence("measures", measures, MEASURES)
 
 
 def read_measure(text: str) -> Measure:
@@ -158,8 +169,13 @@ def frames_at(trajectory: Trajectory, rounds: str | Sequence[int] | None) -> lis
     return sorted(set(places.tolist()))
 
 
-def _gauge(asked: Measure, subject: Subject, path: Path) -> Gauge:
+def gauge(asked: Measure, subject: Subject) -> Gauge:
+    """Make a gauge of a measure.
+
+    Raises:
+        UnfitMeasureError: it makes no sense for these atoms.
+    """
     try:
         return gauge_of(asked, subject)
     except (MeasureError, SelectionError) as error:
-        raise InputError(f"{path}: {asked}: {error}") from None
+        raise UnfitMeasureError(f"{asked}: {error}") from None

@@ -121,6 +121,20 @@ def test_mistakes_are_told(ring: Path, measures: str | list[str], rounds: list[i
     assert message in str(error.value)
 
 
+def test_a_simulation_measures_what_its_file_would_give(ring: Path) -> None:
+    simulation = atomsim.Simulation(atomsim.load(SCENES / "ring.yaml"))
+    measured = atomsim.measure(ring, MEASURES)
+    for frame in range(4):
+        found = simulation.measure(MEASURES)
+        assert list(found) == MEASURES
+        for text, value in found.items():
+            assert np.array_equal(value, measured[text][frame])
+        simulation.step(10)
+    assert simulation.measure().contacts == measured["contacts"][4]
+    with pytest.raises(atomsim.InputError, match=r"^height of rong: there is no group `rong`; did you mean `ring`\?$"):
+        simulation.measure("height of rong")
+
+
 def test_a_scene_of_other_groups_than_the_frames_is_refused(ring: Path) -> None:
     with atomsim.Trajectory(ring) as trajectory:
         header = trajectory.header

@@ -14,8 +14,9 @@ from atomsim.core.model import Floats
 GRAIN = 2.0**40
 """Angles are rounded to multiples of 1/GRAIN degrees, so that a libm that differs in the last place changes nothing."""
 
-COLLINEAR = 1e-12
-"""A body is a line when its second moment across is at most this share of that along it."""
+COLLINEAR = 1e-4
+"""A body is a line when its second moment across is at most this share of that along it: it is a hundred times as long
+as wide, in the mean square, and a little jitter across tells nothing of how it turns about itself."""
 
 ALIKE = 0.05
 """Two second moments that differ by less than this share of the largest are those of a body of revolution."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from typing import Literal
 
 import numpy as np
@@ -81,13 +82,18 @@ class Strain(Memoryless):
     n_columns = 1
 
     def measure(self, block: Block, memory: Floats) -> Floats:
-        """Return max, min or Σ / n over the bonds."""
-        strain = np.empty((self.first.size, block.n_frames))
+        """Return max, min or Σ / n over the bonds, some of which are looked at at a time."""
         step = max(1, PAIRS_AT_A_TIME // block.n_frames)
-        for start in range(0, self.first.size, step):
-            part = slice(start, start + step)
-            way = block.position.take(self.second[part], axis=1) - block.position.take(self.first[part], axis=1)
-            strain[part] = length(way) / self.rest[part, None] - 1.0
+        parts = (self._of(slice(start, start + step), block.position) for start in range(0, self.first.size, step))
         if self.which == "mean":
-            return one_row(ordered_sum(strain) / self.first.size)
-        return one_row(strain.max(axis=0) if self.which == "max" else strain.min(axis=0))
+            total = ordered_sum(next(parts))
+            for part in parts:
+                total = ordered_sum(np.concatenate([total[None], part]))
+            return one_row(total / self.first.size)
+        extreme = np.maximum if self.which == "max" else np.minimum
+        return one_row(reduce(extreme, (extreme.reduce(part, axis=0) for part in parts)))
+
+    def _of(self, bonds: slice, position: Floats) -> Floats:
+        """Return the strain of some bonds, (n, n_frames)."""
+        way = position.take(self.second[bonds], axis=1) - position.take(self.first[bonds], axis=1)
+        return np.asarray(length(way) / self.rest[bonds, None] - 1.0)
