@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from atomsim.core.gauges.block import Block, Gauge, blocks
+from atomsim.core.gauges.block import Block, Gauge, frames_at_a_time
 from atomsim.core.gauges.meter import Meter
 from atomsim.core.gauges.recorded import Recorded
 from atomsim.core.model import Floats, Indices
@@ -112,12 +112,27 @@ def measured(
 
 
 def _blocks(trajectory: Trajectory, gauges: Sequence[Gauge], frames: Indices) -> Iterator[Block]:
-    """Read frames; what was observed when they were computed is known without reading them."""
+    """Return blocks of frames; what was observed when they were computed is known without reading them."""
+    observables = {name: series[frames] for name, series in trajectory.observables.items()}
     if all(isinstance(gauge, Recorded) for gauge in gauges):
         nothing = np.empty((3, 0, len(frames)))
-        yield Block(nothing, nothing, {name: series[frames] for name, series in trajectory.observables.items()})
-        return
-    yield from _read_ahead(blocks(trajectory[int(frame)] for frame in frames))
+        return iter([Block(nothing, nothing, observables)])
+    return _read_ahead(_read(trajectory, frames, observables))
+
+
+def _read(trajectory: Trajectory, frames: Indices, observables: Mapping[str, Floats]) -> Iterator[Block]:
+    """Yield blocks; of two, the older is overwritten by the third, as memory that is asked for again costs time."""
+    n_atoms = trajectory.header.n_atoms
+    step = frames_at_a_time(n_atoms)
+    buffers = np.empty((2, 2, 3, n_atoms, min(step, len(frames))))
+    for number, start in enumerate(range(0, len(frames), step)):
+        cut = slice(start, start + step)
+        chosen = frames[cut].tolist()
+        position, velocity = buffers[number % 2] if len(chosen) == step else np.empty((2, 3, n_atoms, len(chosen)))
+        for place, frame in enumerate(chosen):
+            state = trajectory.state(frame)
+            position[:, :, place], velocity[:, :, place] = state.position.T, state.velocity.T
+        yield Block(position, velocity, {name: series[cut] for name, series in observables.items()})
 
 
 def _read_ahead(coming: Iterator[Block]) -> Iterator[Block]:

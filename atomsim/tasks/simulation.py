@@ -65,7 +65,7 @@ class SceneSimulation(Simulation):
         """
         if measures is None:
             return super().measure()
-        block = Block.of_frames([self.frame()])
+        block = Block.of_frame(self.frame())
         return {text: self._take(read_measure(text), block) for text in texts_of(measures)}
 
     def _take(self, measure: Measure, block: Block) -> float | Floats:

@@ -13,7 +13,7 @@ from typing import Any, overload
 import numpy as np
 
 from atomsim import arguments
-from atomsim.core.model import Floats, Frame, Indices
+from atomsim.core.model import Floats, Frame, Indices, State
 from atomsim.errors import InputError, Notice, Remedy
 from atomsim.trajectory.door import Source, open_source
 from atomsim.trajectory.guard import DamageError, reading
@@ -194,14 +194,22 @@ class Trajectory(Sequence[Frame]):
         for _ in self:
             pass
 
-    def _frame(self, index: int) -> Frame:
+    def state(self, index: int) -> State:
+        """Return the state of a frame, checked, without what was observed of it.
+
+        Raises:
+            InputError: it is damaged.
+        """
         with self._lock, reading(self._found):
             self._require_open()
             state = self._source.state(index)
             is_finite = np.isfinite(state.position).all() and np.isfinite(state.velocity).all()
             if not is_finite and self.end.kind != "blew up":
                 raise DamageError(f"damaged: the state at round {state.round_index} is not finite")
-            return recorded_frame(self._source.series[index], state, self.header.time_step)
+            return state
+
+    def _frame(self, index: int) -> Frame:
+        return recorded_frame(self._source.series[index], self.state(index), self.header.time_step)
 
 
 def _open_again(path: str, n_frames: int, last_digest: str) -> Trajectory:

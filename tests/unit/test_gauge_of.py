@@ -40,7 +40,7 @@ def value(text: str) -> list[float]:
     measure = parse_measure(text)
     gauge = gauge_of(measure, SUBJECT)
     assert gauge.n_columns == len(measure.columns)
-    block = Block.of_frames([frame_of(MODEL, STATE, Observer(MODEL).observe(STATE))])
+    block = Block.of_frame(frame_of(MODEL, STATE, Observer(MODEL).observe(STATE)))
     return Meter([gauge]).take(block)[0].tolist()
 
 

@@ -10,14 +10,14 @@ import pytest
 from support.running import compiled
 
 from atomsim.core.gauges import motion, shape
-from atomsim.core.gauges.block import Block, Gauge, blocks, ordered_sum
+from atomsim.core.gauges.block import Block, Gauge, ordered_sum
 from atomsim.core.gauges.meter import Meter
 from atomsim.core.gauges.near import Gap, Overlap
 from atomsim.core.gauges.passing import Passing
 from atomsim.core.gauges.recorded import Recorded
 from atomsim.core.gauges.rigid import Body, Deformation, Tilt, Turning
 from atomsim.core.gauges.strings import Crossings, Winding
-from atomsim.core.model import Frame, State
+from atomsim.core.model import State
 from atomsim.core.simulate import simulate
 
 N_ATOMS = 37
@@ -170,7 +170,7 @@ def test_how_frames_are_cut_into_blocks_changes_no_bit(gauge: Gauge) -> None:
     cuts = [found[:1], found[1:3], found[3:11], found[11:]]
     assert np.concatenate([pieces.take(block_of(part)) for part in cuts]).tobytes() == at_once.tobytes()
     alone = Meter([gauge])
-    one_by_one = np.concatenate([alone.take(Block.of_state(state)) for state in found])
+    one_by_one = np.concatenate([alone.take(Block.of_states([state])) for state in found])
     assert one_by_one.tobytes() == at_once.tobytes()
 
 
@@ -197,32 +197,21 @@ def test_sums_are_taken_in_order(n_frames: int) -> None:
     assert ordered_sum(values[:, 100:]).shape == (2, n_frames)
 
 
-def frames_of_a_pair(n_rounds: int) -> list[Frame]:
-    groups = {"pair": {"shape": "atoms", "positions": [[0, 0, 0], [1.5, 0, 0]]}}
-    model, state = compiled(
-        groups, bonds={"b": {"within": "pair", "rule": "all-pairs"}}, collisions={"c": {"within": "pair"}}
-    )
-    return list(simulate(model, state, n_rounds, record_every=1))
-
-
-def test_blocks_hold_all_frames_and_what_was_observed(monkeypatch: pytest.MonkeyPatch) -> None:
-    frames = frames_of_a_pair(10)
-    monkeypatch.setattr("atomsim.core.gauges.block.MOST_FRAMES", 4)
-    cut = list(blocks(iter(frames)))
-    assert [block.n_frames for block in cut] == [4, 4, 3]
-    total = np.concatenate(
-        [Recorded(("kinetic_energy", "potential_energy_bonds")).measure(block, np.empty(0))[0] for block in cut]
-    )
-    expected = [frame.observables.kinetic_energy + frame.observables.potential_energy_bonds for frame in frames]
-    assert total.tolist() == expected
-    assert cut[2].observables["momentum"].shape == (3, 3)
-    assert np.array_equal(cut[1].position[:, :, 0], frames[4].position.T)
+def test_a_frame_has_what_was_observed_of_it() -> None:
+    groups = {"pair": {"shape": "atoms", "positions": [[0, 0, 0], [1.5, 0, 0]], "velocity": [1, 2, 3]}}
+    model, state = compiled(groups, bonds={"b": {"within": "pair", "rule": "all-pairs"}})
+    frame = list(simulate(model, state, 3, record_every=1))[-1]
+    block = Block.of_frame(frame)
+    total = Recorded(("kinetic_energy", "potential_energy_bonds")).measure(block, np.empty(0))
+    assert total.tolist() == [[frame.observables.kinetic_energy + frame.observables.potential_energy_bonds]]
+    assert block.observables["momentum"].tolist() == [frame.observables.momentum.tolist()]
+    assert np.array_equal(block.position[:, :, 0], frame.position.T)
 
 
 def test_what_is_not_finite_gives_what_is_not_finite_and_no_warning() -> None:
     position = np.full((N_ATOMS, 3), np.inf)
     position[3] = np.nan
-    block = Block.of_state(State(0, position, position))
+    block = Block.of_states([State(0, position, position)])
     values = Meter([*(gauge for gauge, _ in GAUGES), *OTHERS]).take(block)
     assert values.shape[0] == 1
     assert not np.isfinite(Meter([motion.Speed(FEW)]).take(block)).any()
@@ -230,5 +219,5 @@ def test_what_is_not_finite_gives_what_is_not_finite_and_no_warning() -> None:
 
 def test_centroids_at_one_place_do_not_close_in() -> None:
     position = np.zeros((N_ATOMS, 3))
-    block = Block.of_state(State(0, position, np.random.default_rng(0).normal(size=(N_ATOMS, 3))))
+    block = Block.of_states([State(0, position, np.random.default_rng(0).normal(size=(N_ATOMS, 3)))])
     assert motion.ClosingSpeed(FEW, SOME).measure(block, np.empty(0)).tolist() == [[0.0]]

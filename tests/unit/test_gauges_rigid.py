@@ -111,7 +111,7 @@ def test_the_rotation_is_the_one_of_kabsch() -> None:
     shape = random.normal(size=(9, 3))
     frames = shape + random.normal(size=(40, 9, 3)) * 0.7
     body = Body.of(slice(0, 9), shape)
-    ours = body.rotation(body.now(block_of(frames)))
+    ours = body.rotation(block_of(frames))
     for number, frame in enumerate(frames):
         u, _, vt = np.linalg.svd((shape - shape.mean(axis=0)).T @ (frame - frame.mean(axis=0)))
         sign = np.sign(np.linalg.det(u @ vt))

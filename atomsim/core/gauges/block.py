@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from itertools import islice
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -16,6 +15,9 @@ BLOCK_BYTES = 1 << 20
 
 MOST_FRAMES = 512
 """More frames at a time make nothing faster."""
+
+PAIRS_AT_A_TIME = 1 << 14
+"""Pairs of atoms, times frames, that are looked at together: what is known of them should stay in the cache."""
 
 Atoms: TypeAlias = slice | Indices
 """Ascending numbers of atoms; a slice where they are consecutive, for reading a slice copies nothing."""
@@ -39,23 +41,19 @@ class Block:
     observables: Mapping[str, Floats]
 
     @classmethod
-    def of_state(cls, state: State) -> Block:
-        """Return a block of one state."""
-        position, velocity = (np.ascontiguousarray(array.T)[:, :, None] for array in (state.position, state.velocity))
-        return cls(position, velocity, {})
-
-    @classmethod
-    def of_frames(cls, frames: Sequence[Frame]) -> Block:
-        """Return a block of frames, at least one."""
+    def of_states(cls, states: Sequence[State], observables: Mapping[str, Floats] | None = None) -> Block:
+        """Return a block of states, at least one."""
         position, velocity = (
             np.ascontiguousarray(np.stack(arrays).transpose(2, 1, 0))
-            for arrays in ([frame.position for frame in frames], [frame.velocity for frame in frames])
+            for arrays in ([state.position for state in states], [state.velocity for state in states])
         )
-        names = [field.name for field in fields(Observables)]
-        observed = [frame.observables for frame in frames]
-        return cls(
-            position, velocity, {name: np.array([getattr(one, name) for one in observed], float) for name in names}
-        )
+        return cls(position, velocity, observables or {})
+
+    @classmethod
+    def of_frame(cls, frame: Frame) -> Block:
+        """Return a block of one frame."""
+        observed = {field.name: getattr(frame.observables, field.name) for field in fields(Observables)}
+        return cls.of_states([frame.state], {name: np.array([value], float) for name, value in observed.items()})
 
     @property
     def n_frames(self) -> int:
@@ -92,12 +90,9 @@ class Memoryless:
         return np.empty(0)
 
 
-def blocks(frames: Iterable[Frame]) -> Iterator[Block]:
-    """Gather frames into blocks that fit into the cache, so that memory does not grow with their number."""
-    rest = iter(frames)
-    for first in rest:
-        n_frames = min(max(1, BLOCK_BYTES // first.position.nbytes), MOST_FRAMES)
-        yield Block.of_frames([first, *islice(rest, n_frames - 1)])
+def frames_at_a_time(n_atoms: int) -> int:
+    """Return how many frames make a block that fits into the cache."""
+    return min(max(1, BLOCK_BYTES // (24 * n_atoms)), MOST_FRAMES)
 
 
 def ordered_sum(values: Floats) -> Floats:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from atomsim.core.gauges.block import Block, Memoryless, one_row
+from atomsim.core.gauges.block import PAIRS_AT_A_TIME, Block, Memoryless, one_row
 from atomsim.core.model import CollisionTable, Floats, Indices
 from atomsim.core.pairs.collisions import CONTACT_SQUARED, as_index, n_collision_pairs, table_pairs_near
 from atomsim.core.pairs.near import squared_distance
@@ -82,7 +82,7 @@ class Contacts(Memoryless):
     def _count(self, table: CollisionTable, position: Floats) -> Floats:
         """Count pairs of one table, among those that may come near in any of the frames, (n_frames,)."""
         n_frames = position.shape[2]
-        first_frame = position[:, :, 0]
+        first_frame = np.ascontiguousarray(position[:, :, 0])
         reach = np.inf
         if n_collision_pairs(table) > FEW_DECLARED:
             moved = np.sqrt(squared_distance(first_frame[:, :, None], position).max())
@@ -94,8 +94,13 @@ class Contacts(Memoryless):
         one, other = self.sides
         is_asked = (one[first] & other[second]) | (other[first] & one[second])
         first, second = first[is_asked], second[is_asked]
-        squared = squared_distance(position.take(first, axis=1), position.take(second, axis=1))
-        return np.asarray((squared < CONTACT_SQUARED).sum(axis=0), dtype=float)
+        count = np.zeros(n_frames)
+        step = max(1, PAIRS_AT_A_TIME // n_frames)
+        for start in range(0, first.size, step):
+            part = slice(start, start + step)
+            squared = squared_distance(position.take(first[part], axis=1), position.take(second[part], axis=1))
+            count += np.count_nonzero(squared < CONTACT_SQUARED, axis=0)
+        return count
 
 
 def _least_of_all(position: Floats, left: Indices, right: Indices) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,28 +67,29 @@ class Body:
             is_round=largest - least <= ALIKE * largest,
         )
 
-    def now(self, block: Block) -> Floats:
-        """Return the places from the centroid, (3, n, n_frames)."""
-        place = block.position[:, self.atoms]
-        return place - mean(place)[:, None]
+    def offsets(self, block: Block) -> Iterator[Floats]:
+        """Yield how far atoms are from their centroid along x, y, z, (n, n_frames) each."""
+        for places in block.position:
+            along = places[self.atoms]
+            yield along - mean(along)
 
-    def direction(self, now: Floats) -> Floats:
+    def direction(self, block: Block) -> Floats:
         """Return where a line points: the unit vector u that makes Σ |s u − c|² least, (3, n_frames)."""
         assert self.line is not None
         along = dot(self.line[:, None], self.shape)[:, None]
-        reach = ordered_sum(along * now)
+        reach = np.stack([ordered_sum(along * offset) for offset in self.offsets(block)])
         size = length(reach)
         return np.where(size == 0.0, self.line[:, None], reach / np.where(size == 0.0, 1.0, size))
 
-    def rotation(self, now: Floats) -> Floats:
+    def rotation(self, block: Block) -> Floats:
         """Return the rotation R that makes Σ |R a − c|² least, as unit quaternions (4, n_frames).
 
         It is the first eigenvector of a matrix of four rows (Horn, J. Opt. Soc. Am. A 4 (1987) 629), never a mirror
         image. A line, about which that leaves the turning open, turns the least that takes it where it is.
         """
         if self.line is not None:
-            return _least_rotation(self.line[:, None], self.direction(now))
-        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = _moments(self.shape[:, :, None], now)
+            return _least_rotation(self.line[:, None], self.direction(block))
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = _moments(self.shape[:, :, None], self.offsets(block))
         rows = [
             [xx + yy + zz, yz - zy, zx - xz, xy - yx],
             [yz - zy, xx - yy - zz, xy + yx, zx + xz],
@@ -124,8 +126,7 @@ class Turning:
 
     def measure(self, block: Block, memory: Floats) -> Floats:
         """Return the sums [degrees]."""
-        now = self.body.now(block)
-        attitude = self.body.rotation(now) if self.body.line is None else self.body.direction(now)
+        attitude = self.body.rotation(block) if self.body.line is None else self.body.direction(block)
         before = np.concatenate([memory[3:, None], attitude[:, :-1]], axis=1)
         step = _relative(before, attitude) if self.body.line is None else _least_rotation(before, attitude)
         summed = np.add.accumulate(np.concatenate([memory[:3, None], rotation_vector(step)], axis=1), axis=1)[:, 1:]
@@ -150,7 +151,7 @@ class Tilt(Memoryless):
         up = np.zeros((3, 1))
         up[self.up] = 1.0
         axis = up if self.body.axis is None else self.body.axis[:, None]
-        leans = angle_between(rotate(self.body.rotation(self.body.now(block)), axis), up)
+        leans = angle_between(rotate(self.body.rotation(block), axis), up)
         return one_row(grained(np.abs(leans - angle_between(axis, up))))
 
 
@@ -163,13 +164,12 @@ class Deformation(Memoryless):
 
     def measure(self, block: Block, memory: Floats) -> Floats:
         """Return √(Σ |R a − c|² / n) [length]."""
-        now = self.body.now(block)
-        rotation = self.body.rotation(now)
-        squared = np.zeros(now.shape[1:])
+        rotation = self.body.rotation(block)
         columns = [rotate(rotation, np.eye(3)[:, [axis]]) for axis in range(3)]
-        for axis in range(3):
+        squared = np.zeros((self.body.shape.shape[1], block.n_frames))
+        for axis, offset in enumerate(self.body.offsets(block)):
             rigid = sum(columns[k][axis] * self.body.shape[k][:, None] for k in range(3))
-            squared += (rigid - now[axis]) ** 2
+            squared += (rigid - offset) ** 2
         return one_row(np.sqrt(mean(squared)))
 
 
@@ -198,9 +198,10 @@ def grained(degrees: Floats) -> Floats:
     return np.asarray(np.round(degrees * GRAIN) / GRAIN)
 
 
-def _moments(one: Floats, other: Floats) -> Floats:
-    """Return Σ a bᵀ over atoms, (3, n, …) and (3, n, m) become (3, 3, m)."""
-    return np.stack([ordered_sum(row * other) for row in one])
+def _moments(one: Floats, others: Iterable[Floats]) -> Floats:
+    """Return Σ a bᵀ over atoms; (3, n, 1) and (n, m) for each axis become (3, 3, m)."""
+    columns = [[ordered_sum(row * other) for row in one] for other in others]
+    return np.array(columns).swapaxes(0, 1)
 
 
 def _relative(before: Floats, after: Floats) -> Floats:

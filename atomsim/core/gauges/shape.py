@@ -8,12 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from atomsim.core.gauges.block import Atoms, Block, Memoryless, dot, length, one_row, ordered_sum
+from atomsim.core.gauges.block import PAIRS_AT_A_TIME, Atoms, Block, Memoryless, dot, length, one_row, ordered_sum
 from atomsim.core.gauges.motion import mean
 from atomsim.core.model import Floats, Indices
-
-PAIRS_AT_A_TIME = 1 << 14
-"""Lengths of bonds computed at once: what is known of them should stay in the cache of one core."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
