@@ -85,14 +85,15 @@ def pair(text: str, separator: str, kind: type[Part], option: str, example: str)
     return found[0], found[1]
 
 
-def file_to_write(option: str) -> Callable[[str], Path]:
-    """Return what reads the value of an option as the name of a file, which no option and no stream is."""
+def file_name(option: str) -> Callable[[str], Path]:
+    """Return what reads the value of an option as the name of a file or folder, which no option and no stream is."""
 
-    def read(text: str) -> Path:
-        if text == "-":
-            raise InputError(f"{option} needs the name of a file; nothing is written to standard output (got -)")
-        if text.startswith("-"):
-            raise InputError(f"{option} needs the name of a file; one that begins so is written ./{text} (got {text})")
+    def read(text: str | Path) -> Path:
+        name = str(text)
+        if name == "-":
+            raise InputError(f"{option} needs a name, not a stream (got -)")
+        if name.startswith("-"):
+            raise InputError(f"{option} needs a name; one that begins so is written ./{name} (got {name})")
         return Path(text)
 
     return read
@@ -100,9 +101,7 @@ def file_to_write(option: str) -> Callable[[str], Path]:
 
 def output(metavar: str, help: str) -> Any:
     """Return the option that names the file to write."""
-    return typer.Option(
-        "--output", "-o", metavar=metavar, parser=file_to_write("--output"), show_default=False, help=help
-    )
+    return typer.Option("--output", "-o", metavar=metavar, parser=file_name("--output"), show_default=False, help=help)
 
 
 Backend: TypeAlias = Annotated[

@@ -83,6 +83,12 @@ def test_a_golden_needs_a_name(cli, action):
     assert result.err == "a golden is named after the file of its scene, and standard input has no name\n"
 
 
+def test_expectations_need_a_name(cli):
+    result = cli("test", "-")
+    assert (result.code, result.out) == (2, "")
+    assert result.err == "expectations are named after the file of their scene, and standard input has no name\n"
+
+
 @pytest.mark.parametrize("command", ["run", "check", "golden check", "golden record"])
 def test_a_pipe_by_name_is_refused_and_not_waited_for(cli, command):
     os.mkfifo("pipe.yaml")

@@ -42,11 +42,7 @@ MISTAKES = {
     "run x --rounds=": '--rounds needs a whole number of 1 or more (got "")',
     "run x --threads all": "--threads needs a whole number of 1 or more (got all)",
     "run x --backend gpu": "--backend needs auto, numpy or numba (got gpu)",
-    "run x -o --force": "--output needs the name of a file; one that begins so is written ./--force (got --force)",
-    "run x -o -": "--output needs the name of a file; nothing is written to standard output (got -)",
-    "render x --frames --force": (
-        "--frames needs the name of a file; one that begins so is written ./--force (got --force)"
-    ),
+    "run x -o -": "--output needs a name, not a stream (got -)",
     "compare x": "atomsim compare: B is missing, as in: atomsim compare a.h5 b.h5 --tolerance 1e-9",
     "compare x y --tolerance nan": "--tolerance needs a number of 0 or more (got nan)",
     "compare x y --tolerance -1": "--tolerance needs a number of 0 or more (got -1)",
@@ -62,6 +58,31 @@ def test_a_mistake_is_one_line_of_ours(cli, typed):
     result = cli(*typed.replace("\\", "\\").split(" "))
     assert (result.code, result.out) == (2, "")
     assert result.err == MISTAKES[typed].replace("\\", "\\") + "\n"
+
+
+FILES = {"CSV", "FILE", "FOLDER", "OUT", "PICTURE", "SCENE", "XML"}
+"""What options for files and folders ask for."""
+
+
+def options_for_files():
+    """Yield every option of every command that names a file or a folder, with its command."""
+    for name, command in get_command(app).commands.items():
+        for inner, each in getattr(command, "commands", {"": command}).items():
+            for parameter in each.params:
+                if parameter.param_type_name == "option" and parameter.metavar in FILES:
+                    yield f"{name} {inner}".split(), parameter.opts[0]
+
+
+@pytest.mark.parametrize(("words", "option"), list(options_for_files()), ids=str)
+def test_an_option_is_no_name_of_a_file(cli, words, option):
+    """As in `-o --force`, where the name was forgotten."""
+    result = cli(*words, "x", option, "--force")
+    assert (result.code, result.out) == (2, "")
+    assert result.err == f"{option} needs a name; one that begins so is written ./--force (got --force)\n"
+
+
+def test_there_are_options_for_files():
+    assert len(list(options_for_files())) >= 9
 
 
 def test_a_tilde_in_quotes(cli, monkeypatch):
@@ -83,4 +104,4 @@ def test_the_help_of_every_command_speaks_of_no_types_of_python(cli):
             result = cli(*filter(None, words), "--help")
             assert result.code == 0
             assert not re.search(r"<\w|[{}]|list\[", result.out), result.out
-            assert "x>=" not in result.out
+            assert "x>=" not in result.out and "...." not in result.out

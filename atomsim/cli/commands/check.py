@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atomsim.cli.options import Settings
+from atomsim.cli.options import Settings, file_name
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.scenes import STANDARD_INPUT, check_streams, named_scene
 from atomsim.cli.terminal.output import say, tell
@@ -42,11 +42,19 @@ def check(
     ] = False,
     fix: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write a scene that extends SCENE and applies what can be mended."),
+        typer.Option(
+            metavar="FILE",
+            parser=file_name("--fix"),
+            help="Write a scene that extends SCENE and applies what can be mended.",
+        ),
     ] = None,
     modes: Annotated[
         Path | None,
-        typer.Option(metavar="FOLDER", help="Draw how floppy bodies and loose joints can move, a picture for each."),
+        typer.Option(
+            metavar="FOLDER",
+            parser=file_name("--modes"),
+            help="Draw how floppy bodies and loose joints can move, a picture for each.",
+        ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace files that atomsim did not write.")] = False,
 ) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atomsim.cli.options import Backend, Threads
+from atomsim.cli.options import Backend, Threads, file_name
 from atomsim.cli.remedies import command, typed
 from atomsim.cli.scenes import STANDARD_INPUT
 from atomsim.cli.terminal.output import say, tell
@@ -25,7 +25,12 @@ golden = typer.Typer(help="Record what scenes give, and check that they still do
 Scenes = Annotated[list[Path], typer.Argument(metavar="SCENE", help="Scenes, YAML files.")]
 Folder = Annotated[
     Path | None,
-    typer.Option("--into", metavar="FOLDER", help="The folder of the goldens.  [default: golden, beside each scene]"),
+    typer.Option(
+        "--into",
+        metavar="FOLDER",
+        parser=file_name("--into"),
+        help="The folder of the goldens.  [default: golden, beside each scene]",
+    ),
 ]
 Reason = Annotated[str, typer.Option(metavar="WHY", help="Why the goldens change; goes into the log.")]
 

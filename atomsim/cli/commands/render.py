@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from atomsim.cli.options import file_to_write, number, numbers, output, pair, whole_number
+from atomsim.cli.options import file_name, number, numbers, output, pair, whole_number
 from atomsim.cli.remedies import with_remedies
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
@@ -82,7 +82,7 @@ def render(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            parser=file_to_write("--frames"),
+            parser=file_name("--frames"),
             help="Write one PNG per frame into this folder, and no strip.",
         ),
     ] = None,

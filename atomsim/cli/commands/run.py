@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atomsim.cli.options import Backend, Settings, Threads, output, whole_number
+from atomsim.cli.options import Backend, Settings, Threads, file_name, output, whole_number
 from atomsim.cli.remedies import command, in_words
 from atomsim.cli.scenes import named_scene
 from atomsim.cli.terminal.output import say, tell
@@ -55,7 +55,9 @@ def run(
     compress: Annotated[bool, typer.Option("--compress", help="Write a smaller file, slowly.")] = False,
     resume: Annotated[
         Path | None,
-        typer.Option(metavar="OUT", help="Go on with this trajectory; it holds its scene."),
+        typer.Option(
+            metavar="OUT", parser=file_name("--resume"), help="Go on with this trajectory; it holds its scene."
+        ),
     ] = None,
     force: Annotated[
         bool,

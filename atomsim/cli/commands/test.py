@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from atomsim.cli.options import Backend, output, whole_number
+from atomsim.cli.options import Backend, file_name, output, whole_number
+from atomsim.cli.scenes import STANDARD_INPUT
 from atomsim.cli.terminal.output import say, tell
 from atomsim.cli.voice import explained
+from atomsim.errors import InputError
 
 if TYPE_CHECKING:
     from atomsim.tasks.expect import Tried
@@ -37,7 +39,12 @@ def try_out(
         int, typer.Option("-j", metavar="N", parser=whole_number("-j", 1), help="How many scenes run at a time.")
     ] = 1,
     pictures: Annotated[
-        Path, typer.Option(metavar="FOLDER", help="Where pictures of the failing rounds go; made when needed.")
+        Path,
+        typer.Option(
+            metavar="FOLDER",
+            parser=file_name("--pictures"),
+            help="Where pictures of the failing rounds go; made when needed.",
+        ),
     ] = PICTURES,
     junit: Annotated[Path | None, output("XML", "Write the results as JUnit XML, for continuous integration.")] = None,
     backend: Backend = "auto",
@@ -48,6 +55,8 @@ def try_out(
 
     if junit is not None:
         check_junit(junit)
+    if STANDARD_INPUT in scenes:
+        raise InputError("expectations are named after the file of their scene, and standard input has no name")
     files = scenes_in(scenes)
     tried: list[Tried] = []
     with Progress("scene") as progress:
