@@ -96,14 +96,17 @@ def _damping(''',
 COMPILED: Place = {
     "core/plans/force_plan.py": [
         IMPORT,
-        ("DAMPING, PUSH, TORQUE, TETHER = range(4)", "DAMPING, PUSH, TORQUE, TETHER, SLOPE = range(5)"),
+        (
+            "DAMPING, PUSH, TORQUE, TETHER, TOWARDS = range(5)",
+            "DAMPING, PUSH, TORQUE, TETHER, TOWARDS, SLOPE = range(6)",
+        ),
         (
             "        case TetherForce():\n",
             "        case SlopeForce():\n            return SLOPE, (force.rate,)\n        case TetherForce():\n",
         ),
     ],
     "core/numba_backend/force_kernels.py": [
-        ("import DAMPING, PUSH, TETHER, TORQUE", "import DAMPING, PUSH, SLOPE, TETHER, TORQUE"),
+        ("import DAMPING, PUSH, TETHER, TORQUE, TOWARDS", "import DAMPING, PUSH, SLOPE, TETHER, TORQUE, TOWARDS"),
         (
             "            elif kind == TETHER:",
             "            elif kind == SLOPE:\n                for slot in range(first, last):\n"
@@ -147,6 +150,10 @@ from atomsim.findings.before.diagnose import examine
 from atomsim.scene.field_docs import field_docs
 from atomsim.scene.schema import schema
 
+if len(sys.argv) > 2:  # kernels that are run as the Python they are written in need no minute to compile
+    import numba
+    numba.njit = lambda **options: lambda function: function
+
 loaded = atomsim.loads(sys.argv[1])
 model, state = atomsim.compile(loaded)
 one = NumpyStepper(model, state)
@@ -172,8 +179,7 @@ def used(folder: Path) -> tuple[dict[str, Any], str]:
     from importlib.util import find_spec
 
     numba = ["and numba"] if find_spec("numba") else []
-    # Kernels that are run as the Python they are written in need no minute to compile.
-    done = finish(SCENE, *numba, program=python(USE), PYTHONPATH=str(folder), NUMBA_DISABLE_JIT="1", cwd=folder)
+    done = finish(SCENE, *numba, program=python(USE), PYTHONPATH=str(folder), cwd=folder)
     assert done.returncode == 0, done.stderr
     first, *message = done.stdout.splitlines()
     return json.loads(first), "\n".join(message)

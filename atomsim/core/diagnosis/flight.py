@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import assert_never
 
 import numpy as np
 
@@ -14,13 +13,11 @@ from atomsim.core.model import (
     DampingForce,
     ExternalForce,
     Floats,
-    HoldForce,
     Indices,
     Model,
     OscillateForce,
     PushForce,
     State,
-    TetherForce,
     TorqueForce,
     TowardsForce,
 )
@@ -205,7 +202,10 @@ def movers(model: Model, state: State, body: Indices, group: Indices) -> list[Mo
 
 
 def _is_predictable(force: ExternalForce) -> bool:
-    """Return whether the flight of a body on which a force acts is known: a torque leaves the centroid alone."""
+    """Return whether the flight of a body on which a force acts is known: a torque leaves the centroid alone.
+
+    A kind of force that nothing is known of makes it unknown.
+    """
     match force:
         case DampingForce() | PushForce() | TorqueForce():
             return True
@@ -213,10 +213,8 @@ def _is_predictable(force: ExternalForce) -> bool:
             return not any(force.impulse)
         case TowardsForce():
             return force.magnitude == 0.0
-        case TetherForce() | HoldForce():
-            return False
         case _:
-            assert_never(force)
+            return False
 
 
 def _alike(model: Model, state: State, group: Indices) -> Indices:
