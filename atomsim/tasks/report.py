@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from atomsim.disk import behind, write_whole
-from atomsim.errors import InputError
+from atomsim.errors import InputError, Remedy
 from atomsim.findings.finding import Finding
 from atomsim.measures.events import Event
 from atomsim.tasks.expect import Judged, judged
@@ -86,7 +86,7 @@ def check_report(path: Path, *, replace: bool) -> None:
     if not folder.is_dir():
         raise InputError(f"{path}: the folder {folder} does not exist")
     if path.exists() and not replace and not _is_ours(path):
-        raise InputError(f"{path} exists and is no report of atomsim's; add --force to replace it")
+        raise InputError(f"{path} exists and is no report of atomsim's", Remedy("replace"))
 
 
 def _is_ours(path: Path) -> bool:

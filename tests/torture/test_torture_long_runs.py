@@ -42,7 +42,7 @@ def test_memory_stays_flat_and_the_file_grows_evenly(tmp_path, monkeypatch):
     def look(round_index: int, rounds: int) -> None:
         if round_index % (ROUNDS // 100) == 0:  # not always: what is kept here would grow too
             seen.append((round_index, memory(), journal_path(path).stat().st_size))
-        assert progress_line(0, round_index, rounds, 1.0).startswith(f"round {round_index:,} of {ROUNDS:,}  ")
+        assert progress_line("round", 0, round_index, rounds, 1.0).startswith(f"round {round_index:,} of {ROUNDS:,}  ")
 
     run(loads(SCENE), path, report=look)
     rounds, memories, sizes = zip(*seen, strict=True)
