@@ -245,7 +245,7 @@ def _on_white(color: str) -> str:
     """Return a colour dark enough for a line on white.
 
     >>> _on_white("#4682b4"), _on_white("#ffff00")
-    ('#4682b4', '#bebe00')
+    ('#4682b4', '#c1c100')
     """
     channels = [int(color[place : place + 2], 16) / 255 for place in (1, 3, 5)]
     luminance = sum(share * channel**2.2 for share, channel in zip((0.2126, 0.7152, 0.0722), channels, strict=True))
