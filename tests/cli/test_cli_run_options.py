@@ -45,7 +45,7 @@ def test_compress_makes_a_smaller_file_of_the_same_frames(cli):
 
 def test_quiet_leaves_out_warnings_before_and_after(cli):
     Path("fast.yaml").write_text(FAST)
-    assert cli("run", "fast.yaml", "-o", "loud.h5").err.startswith("warning: ")
+    assert "warning: " in cli("run", "fast.yaml", "-o", "loud.h5").err
     assert cli("run", "fast.yaml", "-q").err == ""
     blow_up = ("run", "scenes/rods.yaml", "--rounds", "400", "--set", "time_step=0.1", "--force")
     assert cli(*blow_up).err.startswith("--set time_step=0.1: warning: time_step 0.1 ")
@@ -82,4 +82,4 @@ def test_backend_and_threads_reach_what_computes(cli, command):
 def test_check_has_nothing_against_showing_the_last_round(cli):
     result = cli("check", "scenes/rods.yaml", "--set", "rounds=20", "--set", "render={rounds: [0, 20]}")
     assert result.code == 0
-    assert "warning" not in result.out
+    assert "[no-such-round]" not in result.out
